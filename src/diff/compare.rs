@@ -1,4 +1,4 @@
-//! What changed between two reports.
+//! Changes between two reports.
 
 use crate::compare::{Basis, Check};
 use crate::report::{Status, Stored};
@@ -17,7 +17,7 @@ pub struct Difference {
     pub numbers: Vec<NumberChange>,
     /// Intervals of the same scene that have no point in common, one sentence each.
     pub contradictions: Vec<String>,
-    /// What the reader should know before comparing.
+    /// Remarks to read before comparing.
     pub notes: Vec<String>,
 }
 
@@ -26,13 +26,13 @@ pub struct Difference {
 pub struct CheckChange {
     /// Its name.
     pub name: String,
-    /// What changed.
+    /// The kind of change.
     pub kind: Kind,
     /// As it is in each.
     pub checks: [Option<Check>; 2],
 }
 
-/// What became of a check, in the order in which they are shown.
+/// Kinds of changes of a check, in the order in which they are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// It passed in the first report, and does not in the second.
@@ -45,14 +45,14 @@ pub enum Kind {
     New,
     /// Only in the first report.
     Missing,
-    /// The same.
+    /// Neither the outcome nor the value changed.
     Same,
 }
 
 /// A number in both reports, or in one of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumberChange {
-    /// What it is.
+    /// Its name, such as “energy: lower bound”.
     pub name: String,
     /// Its value in each.
     pub values: [Option<f64>; 2],
@@ -64,7 +64,7 @@ impl NumberChange {
         self.values[0].zip(self.values[1]).map(|(a, b)| b - a)
     }
 
-    /// Whether it is more than rounding.
+    /// True if the change is more than rounding.
     pub fn is_changed(&self) -> bool {
         moved(self.values)
     }
@@ -85,14 +85,14 @@ impl Kind {
 }
 
 impl Difference {
-    /// Whether a check has another outcome, or the two contradict each other: then one of them is wrong, or something was
+    /// True if a check has another outcome, or the two reports contradict each other: then one of them is wrong, or something was
     /// broken or mended between them.
     pub fn is_decisive(&self) -> bool {
         let [first, second] = &self.reports;
         !self.contradictions.is_empty() || first.status != second.status || self.checks.iter().any(|c| self.decides(c))
     }
 
-    /// Whether a change of a check matters: another outcome does, and so does a check that was not made again.
+    /// True if a change of a check matters: another outcome does, and so does a check that was not made again.
     fn decides(&self, change: &CheckChange) -> bool {
         let [first, second] = &self.reports;
         match change.kind {
@@ -137,7 +137,7 @@ fn checks(first: &Stored, second: &Stored) -> Vec<CheckChange> {
     all
 }
 
-/// Whether the numbers of a check are others. An identity that holds but for round-off has moved if it did by more than that.
+/// True if the numbers of a check differ. An identity that holds up to round-off counts as moved if it differs by more than that.
 fn has_moved(a: &Check, b: &Check) -> bool {
     let slack = if a.basis == Basis::RoundOff { a.allowed } else { 0.0 };
     [[a.value, b.value], [a.reference, b.reference]].into_iter().any(|pair| {

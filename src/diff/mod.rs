@@ -1,7 +1,7 @@
 //! Two reports beside each other: what changed from one to the other, and whether it matters.
 //!
-//! What matters is the outcome of a check, and brackets of one scene that have no point in common: both cannot be right.
-//! Numbers that moved are told, and times are for information.
+//! Outcomes of checks matter, and so do brackets of one scene that have no point in common: both cannot be right.
+//! Numbers that moved are reported, and times are for information.
 
 mod compare;
 mod page;

@@ -43,7 +43,7 @@ pub fn text(difference: &Difference, names: [&str; 2]) -> String {
     text
 }
 
-/// What the comparison comes to, in one sentence.
+/// The verdict of the comparison, in one sentence.
 pub(super) fn verdict(difference: &Difference) -> String {
     if !difference.contradictions.is_empty() {
         return "The two reports contradict each other.".to_string();

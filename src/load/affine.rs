@@ -10,12 +10,12 @@ pub struct Affine {
 }
 
 impl Affine {
-    /// The same everywhere.
+    /// A uniform field.
     pub fn constant(value: [f64; 2]) -> Self {
         Affine { value, gradient: [[0.0; 2]; 2] }
     }
 
-    /// Whether it is the same everywhere.
+    /// True if it is uniform.
     pub fn is_constant(&self) -> bool {
         self.gradient == [[0.0; 2]; 2]
     }
@@ -31,7 +31,7 @@ impl Affine {
         Affine { value: scaled(self.value), gradient: self.gradient.map(scaled) }
     }
 
-    /// The same function of coordinates that count from `middle`.
+    /// Changes to coordinates that count from `middle`; the field stays the same.
     pub(crate) fn shift(&mut self, middle: [f64; 2]) {
         self.value = [0, 1].map(|i| value_at(self.value[i], self.gradient[i], middle));
     }

@@ -30,7 +30,7 @@ use crate::vector::norm;
 pub struct BodyForce {
     given: Affine,
     rotation: Option<Rotation>,
-    /// Whether it turns about the line through its centre along y, and not about the centre.
+    /// True if it turns about the line through its centre along y, and not about the centre.
     about_line: bool,
 }
 
@@ -63,7 +63,7 @@ impl BodyForce {
     pub const NONE: BodyForce =
         BodyForce { given: Affine { value: [0.0; 2], gradient: [[0.0; 2]; 2] }, rotation: None, about_line: false };
 
-    /// The same force everywhere.
+    /// A uniform force.
     pub fn constant(force: [f64; 2]) -> Self {
         BodyForce::affine(Affine::constant(force))
     }
@@ -73,7 +73,7 @@ impl BodyForce {
         BodyForce { given, ..BodyForce::NONE }
     }
 
-    /// The same with a constant force added.
+    /// This force with a constant one added.
     #[must_use]
     pub fn plus(mut self, force: [f64; 2]) -> Self {
         (0..2).for_each(|c| self.given.value[c] += force[c]);
@@ -85,13 +85,13 @@ impl BodyForce {
         BodyForce { rotation: Some(rotation), ..self }
     }
 
-    /// The same with its rotation about the line through the centre along y, as that of a body of revolution: the force is ϱω²(x − c_x) along x.
+    /// This force with its rotation about the line through the centre along y, as in a body of revolution: ϱω²(x − c_x) along x.
     #[must_use]
     pub fn about_line(self) -> Self {
         BodyForce { about_line: true, ..self }
     }
 
-    /// Whether its rotation is about a line, as that of a body of revolution.
+    /// True if its rotation is about a line, as in a body of revolution.
     pub fn is_about_line(&self) -> bool {
         self.about_line
     }
@@ -106,12 +106,12 @@ impl BodyForce {
         self.rotation
     }
 
-    /// Whether there is no force anywhere.
+    /// True if there is no force anywhere.
     pub fn is_none(&self) -> bool {
         self.given == Affine::default() && self.turning() == 0.0
     }
 
-    /// Whether it is the same everywhere.
+    /// True if it is uniform.
     pub fn is_constant(&self) -> bool {
         self.gradient() == [[0.0; 2]; 2]
     }
@@ -138,17 +138,17 @@ impl BodyForce {
         [[xx + turning, xy], [yx, if self.about_line { yy } else { yy + turning }]]
     }
 
-    /// The same force as one affine function of x.
+    /// The whole force, rotation included, as one affine function of x.
     pub fn as_affine(&self) -> Affine {
         Affine { value: self.at([0.0; 2]), gradient: self.gradient() }
     }
 
-    /// The same force as an affine function of coordinates about the centroid of a triangle.
+    /// The whole force as an affine function of coordinates about the centroid of a triangle.
     pub fn about_centroid(&self, corners: [[f64; 2]; 3]) -> Affine {
         Affine { value: self.on(corners).mean(), gradient: self.gradient() }
     }
 
-    /// What acts on the triangle with these corners.
+    /// The force on the triangle with these corners.
     pub fn on(&self, corners: [[f64; 2]; 3]) -> OnTriangle {
         OnTriangle::new(self, corners)
     }
@@ -165,7 +165,7 @@ impl BodyForce {
         BodyForce { given: self.given.times(factor), rotation: self.rotation.map(scaled), ..*self }
     }
 
-    /// The same force in coordinates that count from `middle`.
+    /// Changes to coordinates that count from `middle`; the force stays the same.
     pub(crate) fn shift(&mut self, middle: [f64; 2]) {
         self.given.shift(middle);
         if let Some(rotation) = &mut self.rotation {

@@ -28,7 +28,7 @@ impl OnTriangle {
         OnTriangle { corners, values, area }
     }
 
-    /// The same with an area that was computed elsewhere, for sums that shall not differ in their last digits.
+    /// Takes an area that was computed elsewhere, for sums that must not differ in their last digits.
     pub fn of_area(self, area: f64) -> Self {
         OnTriangle { area, ..self }
     }
@@ -50,7 +50,7 @@ impl OnTriangle {
         }
     }
 
-    /// Whether there is no force.
+    /// True if there is no force.
     pub fn is_none(&self) -> bool {
         match self.values {
             Values::Constant(value) => value == [0.0; 2],

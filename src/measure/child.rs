@@ -13,7 +13,7 @@ use super::clock::Clock;
 use super::record::Measured;
 use crate::process::Tail;
 
-/// What a run is allowed.
+/// Limits of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits<'a> {
     /// The process is ended after this time.
@@ -91,7 +91,7 @@ pub fn run(program: &Path, arguments: &[OsString], limits: Limits<'_>) -> std::i
     }))
 }
 
-/// What is kept of a stream: results are in its beginning, complaints in its end.
+/// The kept parts of a stream: results are at its beginning, complaints at its end.
 #[derive(Default)]
 struct Printed {
     beginning: Vec<u8>,
@@ -127,7 +127,7 @@ mod tests {
 
     use super::*;
 
-    /// What comes of a program that does `body`.
+    /// Runs a program with the shell commands `body`.
     fn run_script(body: &str) -> Ended {
         let folder = tempfile::tempdir().expect("a folder");
         let program = folder.path().join("program");

@@ -17,7 +17,7 @@ impl Clock {
         Clock { entered: Instant::now(), startup: Duration::from_nanos(u64::try_from(startup).unwrap_or(0)) }
     }
 
-    /// What [`Clock::since`] wants to be told.
+    /// Nanoseconds since 1970, as [`Clock::since`] takes them.
     pub fn stamp() -> u128 {
         SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos()
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct Machine {
     /// Version of the program.
     pub version: String,
-    /// Whether the compiler optimised for speed; seconds of other builds say little.
+    /// True if the compiler optimised for speed; seconds of other builds say little.
     pub optimised: bool,
     /// Name of the processor, where the system tells.
     pub processor: Option<String>,

@@ -94,22 +94,22 @@ impl Method {
         }
     }
 
-    /// Whether its stresses are of a higher degree than those of the paper.
+    /// True if its stresses are of a higher degree than those of the paper.
     pub fn is_higher(self) -> bool {
         !self.is_primal() && self.degree() > 1
     }
 
-    /// Whether it refines on the way to a tolerance.
+    /// True if it refines on the way to a tolerance.
     pub fn is_adaptive(self) -> bool {
         matches!(self, Method::Adaptive(_))
     }
 
-    /// Whether it delivers a two-sided bracket of its own.
+    /// True if it delivers a two-sided bracket of its own.
     pub fn has_bracket(self) -> bool {
         !self.is_primal()
     }
 
-    /// Whether it is the displacement model.
+    /// True if it is the displacement model.
     pub fn is_primal(self) -> bool {
         matches!(self, Method::Displacements(_))
     }

@@ -21,7 +21,7 @@ pub use record::{Answer, Asked, End, Measured, Seconds, finite_or_null};
 pub use settings::Settings;
 pub use solve::measure;
 
-/// What is being measured, for whoever waits.
+/// Progress of the measurements, for whoever waits.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Step {
     /// Its name.

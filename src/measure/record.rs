@@ -1,4 +1,4 @@
-//! What a measured run leaves behind, as it travels between processes and into files.
+//! Records of measured runs, as they travel between processes and into files.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -9,7 +9,7 @@ pub struct Measured {
     pub method: String,
     /// How it ended.
     pub end: End,
-    /// What it answered, where it did.
+    /// Its answer, where it gave one.
     pub answer: Option<Answer>,
     /// Where the time went.
     pub seconds: Seconds,
@@ -72,7 +72,7 @@ impl Seconds {
 /// The numbers of a run. Energies and forces include the thickness.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
-    /// What a displacement solver of the user's calls itself.
+    /// Name that the user's displacement solver gives itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub solver: Option<String>,
     /// Triangles of the (last) mesh.

@@ -1,4 +1,4 @@
-//! What may be chosen for a run.
+//! Settings of a run.
 
 use crate::budget::Budget;
 use crate::primal::SolverCommand;
@@ -26,7 +26,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What an adaptive run is to reach by refining this.
+    /// Goal of an adaptive run that refines as `adapt` says.
     pub(super) fn goal(&self, adapt: Adapt) -> Goal {
         let tolerance = self.tolerance.unwrap_or(f64::MIN_POSITIVE);
         let wanted = self.quantities.iter().map(|name| Wanted { name: name.clone(), tolerance });

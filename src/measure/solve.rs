@@ -1,4 +1,4 @@
-//! What happens inside the process: make the problem, solve it, evaluate the answer.
+//! The work inside the process: make the problem, solve it, evaluate the answer.
 
 use super::memory;
 use super::method::Method;

@@ -17,7 +17,7 @@ pub struct Answer {
     pub name: String,
     /// Its interval; both ends infinite, with the reason, where none is known.
     pub interval: Interval,
-    /// What it is.
+    /// The kind of quantity.
     pub kind: Kind,
     /// By how much the root of the energy error of a displacement can change its value, at most: the width of the interval of
     /// first order over the root of the gap that it comes from. Infinite where there is no such interval.
@@ -30,7 +30,7 @@ impl Answer {
         Answer { name, kind, interval: Interval::unknown(reason), sensitivity: f64::INFINITY }
     }
 
-    /// What two meshes tell of the same value, with the shares of this one.
+    /// Combines the intervals of the same value on two meshes, with the shares of this one.
     fn and(self, finer: &Answer) -> Self {
         Answer {
             interval: self.interval.and(&finer.interval),
@@ -128,8 +128,8 @@ fn sensitivity(interval: &Interval, gap: f64) -> f64 {
     if gap > 0.0 && of_root.is_finite() { of_root } else { f64::INFINITY }
 }
 
-/// What the answers on a mesh and on a finer one of the same domain tell together: the ends that are nearer, with what each
-/// triangle of the first mesh adds.
+/// Combines the answers on a mesh and on a finer one of the same domain: the ends that are nearer, with the contribution of each
+/// triangle of the first mesh.
 pub fn sharper(own: Vec<Answer>, finer: &[Answer]) -> Vec<Answer> {
     let both = |own: Answer| match finer.iter().find(|finer| finer.name == own.name) {
         Some(finer) => own.and(finer),
@@ -150,7 +150,7 @@ fn elements(options: &Options, stress: &StressField) -> Elements {
 /// Part of the largest displacement of a motion that is none.
 const UNMOVED: f64 = 1e-9;
 
-/// Whether a rigid motion changes a quantity.
+/// True if a rigid motion changes a quantity.
 fn changes(problem: &Problem, form: &Form, motion: &Motion) -> bool {
     // No stress changes.
     let Some(functional) = form.linear() else { return false };

@@ -15,7 +15,7 @@ use crate::statics::{self, Solvability, Statics, StaticsError};
 pub struct Certified {
     /// Scene and mesh.
     pub problem: Problem,
-    /// What rigid motions are held.
+    /// The rigid motions that are held.
     pub statics: Statics,
     /// λ_h.
     pub dual: DualSolution,
@@ -26,7 +26,7 @@ pub struct Certified {
 /// Why there is no bracket.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
-    /// Whether there is an equilibrium could not be decided.
+    /// It could not be decided whether there is an equilibrium.
     #[error(transparent)]
     Statics(#[from] StaticsError),
     /// There is none.
@@ -47,7 +47,7 @@ pub enum StudyError {
          refine the mesh at the end of the contact"
     )]
     BeyondMesh {
-        /// What would have to be expressed.
+        /// The pressures that would have to be expressed, in words.
         sentence: String,
         /// The part of an edge that pressure of the degrees in use can be confined to.
         part: String,
@@ -161,7 +161,7 @@ pub(super) fn balance(
 /// Room for several times what a solve is estimated to take: nothing that it is refused for may depend on the threads.
 const AMPLE: f64 = 3.0;
 
-/// Whether another thread can make what the upper bound needs of the mesh beside the solve, and there is memory for both.
+/// True if another thread can prepare the mesh data of the upper bound beside the solve, and there is memory for both.
 fn may_prepare_beside(problem: &Problem, method: &dyn DualMethod, options: &Options) -> bool {
     let size = Size::of_degrees(problem, &options.elements);
     let both = AMPLE * method.memory(size) + size.bracket();
@@ -251,7 +251,7 @@ mod tests {
     use crate::dual::Condensed;
     use crate::scene::Scene;
 
-    /// What a run is refused for may not depend on its threads, so nothing is made beside where memory is short.
+    /// Reasons to refuse a run must not depend on its threads, so nothing is made beside the solve where memory is short.
     #[test]
     fn nothing_is_made_beside_a_solve_without_another_thread_and_ample_memory() {
         let scene = Scene::read(Path::new("cases/two_blocks.toml")).expect("a scene");

@@ -9,12 +9,12 @@ use crate::compare::{
 use crate::diagnose::{Diagnosis, Energies, diagnose, in_the_mean};
 use crate::problem::{Note, Problem, Scales};
 
-/// What holding a field to its claim gives.
+/// The result of holding a field to its claim.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
     /// One check for each property of a discrete solution.
     pub checks: Vec<Check>,
-    /// What explains those that fail; `None` where none does.
+    /// The explanation of those that fail; `None` where there is none.
     pub diagnosis: Option<Diagnosis>,
     /// The residual, triangle by triangle.
     pub residual: Vec<f64>,
@@ -83,8 +83,8 @@ pub fn weak_contact(problem: &Problem, judged: &Judged) -> Option<Vec<Note>> {
     (judged.violation.support <= ADMISSIBLE && contacts).then(|| weak_notes(&solution, || energies(problem, judged)))
 }
 
-/// The same for the solution of a method whose contact sides have different vertices: `own` is it on the triangles of its file,
-/// those of `before`, from which `problem` was made. Nothing is fitted to it.
+/// As [`claim`], for the solution of a method whose contact sides have different vertices: `own` is the solution on the triangles of
+/// its file, those of `before`, from which `problem` was made. Nothing is fitted to it.
 ///
 /// # Errors
 /// As [`claim`].
@@ -117,7 +117,7 @@ pub fn claim_before_contact(
     Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle(), notes: Vec::new() })
 }
 
-/// What explains a field best: on quadrilaterals by whichever rule its program may have used.
+/// The best explanation of a field: on quadrilaterals by whichever rule its program may have used.
 fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracket: &Bracket) -> Option<Diagnosis> {
     let energies = energies(problem, judged);
     let own = diagnose(solution, energies);
@@ -149,7 +149,7 @@ fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracke
     others.into_iter().find_map(by).unwrap_or(own)
 }
 
-/// Whether the sharpest `bracket` of a run leaves a field the name of a solution at all: its guaranteed error is below 100 %.
+/// Checks with the sharpest `bracket` of a run that a field may be called a solution at all: its guaranteed error is at most 100 %.
 pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Check {
     let mut checks = [Check::at_most(
         "solution/guaranteed-error",
@@ -165,8 +165,8 @@ pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Ch
     check
 }
 
-/// What explains the solutions of a displacement model that checks of their own say are none; of those of degree 1 and 2, whose
-/// nodal forces the hypotheses are fitted to. `bracket` is that of the stress side.
+/// Explanations of solutions of a displacement model that fail checks of their own; only of degree 1 and 2, to whose nodal forces
+/// the hypotheses are fitted. `bracket` is that of the stress side.
 pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) -> Vec<Diagnosis> {
     let problem = &*problem.softened();
     let wrong = |judged: &&Judged| {

@@ -12,7 +12,7 @@ use crate::report::{QuantityOfModel, QuantitySummary};
 /// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
 const OWN_ERROR: f64 = 2.0;
 
-/// What solvers leave of a value, relative to what such a quantity can be.
+/// Error that solvers leave in a value, relative to the size of such a quantity.
 const SOLVED: f64 = 1e-8;
 
 /// A value of a quantity that comes without a field.
@@ -75,7 +75,7 @@ fn values_in(certified: &Certified, answer: &Answer, comparison: &Comparison) ->
 /// The value of a displacement model.
 struct Told {
     value: f64,
-    /// What it is worth, where its reactions tell it.
+    /// A remark on its worth, where it comes from reactions or stresses.
     remark: Option<String>,
 }
 
@@ -214,7 +214,7 @@ fn inside(name: &str, answer: &Answer, value: f64, allowed: f64, whose: &str) ->
     Check::with_difference(name, value, nearest, answer.interval.outside(value), allowed, Basis::Guaranteed, why)
 }
 
-/// What the energy of a displacement leaves open of its value.
+/// The error in its value that the energy of a displacement allows.
 fn own_error(sharpest: &Bracket, answer: &Answer, judged: &Judged) -> f64 {
     answer.sensitivity * (judged.admissible.upper() - sharpest.lower()).max(0.0).sqrt()
 }

@@ -1,4 +1,4 @@
-//! What is guaranteed for all data of a scene some of whose numbers are known as ranges.
+//! Guarantees for all data of a scene some of whose numbers are known as ranges.
 //!
 //! The least energy is monotone in each of these numbers ([`crate::scene::DataRange`]), so that the lower bound of the ends with the lowest
 //! energy and the upper bound of those with the highest enclose the energies of all that lie between: two solves.
@@ -14,12 +14,12 @@ use crate::report::{DataRangeSummary, RangedParameter};
 pub struct OtherEnd {
     /// The two bounds of its exact energy; `None` where no upper bound could be built.
     pub bracket: Option<[f64; 2]>,
-    /// Whether its loads alone do work.
+    /// True if its loads alone do work.
     pub is_cone: bool,
 }
 
 impl OtherEnd {
-    /// What is kept of its solution.
+    /// Keeps the two bounds of a solution, and whether loads alone do work.
     pub fn of(certified: &Certified) -> Self {
         let upper = certified.bracket.free.as_ref().ok().map(|free| free.upper());
         OtherEnd {
@@ -29,7 +29,7 @@ impl OtherEnd {
     }
 }
 
-/// What holds for all data, from the bracket of the ends with the lowest energy and the other end.
+/// The summary for all data, from the bracket of the ends with the lowest energy and the other end.
 pub(super) fn data_range(problem: &Problem, lowest: &Bracket, other: &OtherEnd) -> DataRangeSummary {
     let scene = &problem.scene;
     let parameter = |range: &crate::scene::DataRange| RangedParameter {

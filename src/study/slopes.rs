@@ -27,23 +27,23 @@ const SMALL: f64 = 1e-3;
 const MOST_STEPS: usize = 4;
 const LARGEST: f64 = 8.0;
 
-/// What rounding costs a slope, relative to it.
+/// Rounding error of a slope, relative to it.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// The same of the integral of a stress, relative to the integral over all of the triangles.
+/// Rounding error of the integral of a stress, relative to the integral over all of the triangles.
 const ROUNDED_MEAN: f64 = 1e-12;
 
-/// What there is no interval of.
+/// Reason why a quantity has no interval of this kind.
 const NO_SLOPE: &str = "with friction, elastic contact or polynomial tractions only mean displacements of free and loaded boundaries and of \
                         bodies, mean stresses, and forces of contacts and of supports without springs have an interval, and this is none of them";
 
 /// Why there is none all the same.
 const UNSOLVED: &str = "the problem with other data, from whose energy the interval would come, could not be bounded";
 
-/// Whether a quantity has an interval of this kind.
+/// Refuses a quantity that has no interval of this kind.
 ///
 /// # Errors
-/// A sentence on what has.
+/// A sentence on the quantities that have one.
 pub fn refuse(problem: &Problem, form: &Form) -> Result<(), &'static str> {
     form.linear().and_then(|functional| Change::of(problem, functional)).map(|_| ()).ok_or(NO_SLOPE)
 }
@@ -58,7 +58,7 @@ pub fn interval(certified: &Certified, form: &Form, options: &Options) -> Interv
     Slope { certified, functional, options, change }.interval().unwrap_or_else(|| Interval::unknown(UNSOLVED))
 }
 
-/// What of the data changes.
+/// The part of the data that changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Change {
     /// Nothing: the quantity is known.

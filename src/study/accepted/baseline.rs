@@ -32,7 +32,7 @@ pub enum BaselineError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// It cannot be written.
@@ -40,13 +40,13 @@ pub enum BaselineError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: std::io::Error,
     },
     /// Something else has its name.
     #[error("baseline {path} is not a regular file; give the path of a file")]
     NoFile {
-        /// What was given.
+        /// The path that was given.
         path: PathBuf,
     },
     /// It is no baseline.
@@ -54,7 +54,7 @@ pub enum BaselineError {
     Content {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault, in words.
         reason: String,
     },
 }

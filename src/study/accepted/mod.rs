@@ -88,7 +88,7 @@ impl Accepted {
         Accepted { text: None, scenes: BTreeMap::new() }
     }
 
-    /// Whether the name of `path` is that of such a file.
+    /// True if the name of `path` is that of such a file.
     pub fn is_meant(path: &Path) -> bool {
         path.extension().is_some_and(|extension| extension == "toml")
     }
@@ -106,10 +106,10 @@ impl Accepted {
         Self::parse(&text).map_err(|reason| BaselineError::Content { path: path.to_path_buf(), reason })
     }
 
-    /// The same, or [`Accepted::empty`] where there is no such file.
+    /// As [`Self::read`], or [`Accepted::empty`] where there is no such file.
     ///
     /// # Errors
-    /// There is something else in its place.
+    /// As [`Self::read`], except for a file that does not exist.
     pub fn read_if_there(path: &Path) -> Result<Self, BaselineError> {
         match Self::read(path) {
             Err(BaselineError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Ok(Self::empty()),
@@ -176,7 +176,7 @@ impl Accepted {
         names.into_iter().map(row).collect()
     }
 
-    /// What changes in the file when the numbers in `found`, rows of scenes by name, are accepted.
+    /// Changes of the file when the numbers in `found`, rows of scenes by name, are accepted.
     fn edits(&self, found: &BTreeMap<String, Vec<BaselineRow>>, signature: &Signature) -> Vec<Edit> {
         let text = self.text.as_deref().unwrap_or_default();
         let lines: Vec<&str> = text.split_inclusive('\n').collect();
@@ -230,7 +230,7 @@ impl Accepted {
         (!edits.is_empty()).then(|| apply(self.text.as_deref().unwrap_or_default(), &edits))
     }
 
-    /// The same as a patch of the file `path`.
+    /// As [`Self::with`], as a patch of the file `path`.
     pub fn patch(
         &self,
         path: &str,
@@ -263,7 +263,7 @@ pub fn checks(rows: &[BaselineRow]) -> Vec<Check> {
     rows.iter().map(check).collect()
 }
 
-/// Whether the value at `span` is the only one in its lines.
+/// True if the value at `span` is the only one in its lines.
 fn is_alone(text: &str, span: &Range<usize>) -> bool {
     let start = text[..span.start].rfind('\n').map_or(0, |i| i + 1);
     let rest = text[span.end..].lines().next().unwrap_or_default().trim_start();

@@ -28,7 +28,7 @@ pub fn apply(text: &str, edits: &[Edit]) -> String {
     new
 }
 
-/// The same as a patch of the file `path`, which does not exist yet where `text` is `None`.
+/// `edits` as a patch of the file `path`, which does not exist yet where `text` is `None`.
 pub fn unified(path: &str, text: Option<&str>, edits: &[Edit]) -> String {
     let old: Vec<&str> = text.unwrap_or_default().split_inclusive('\n').collect();
     let mut patch = match text {
@@ -83,7 +83,7 @@ mod tests {
         Edit { lines, new: new.iter().map(|line| line.to_string()).collect() }
     }
 
-    /// What `git apply` makes of a patch.
+    /// The file that `git apply` makes of `text` and a patch.
     fn applied(text: Option<&str>, patch: &str) -> String {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("file.toml");

@@ -1,9 +1,9 @@
-//! Whether a mesh fits into memory, asked before it is solved on.
+//! A test that a mesh fits into memory, made before it is solved on.
 
 use crate::budget::{Budget, Excess};
 use crate::dual::{DualMethod, Size};
 
-/// What a method may take.
+/// A method and the memory that it may take.
 #[derive(Clone, Copy)]
 pub struct Admission<'a> {
     method: &'a dyn DualMethod,
@@ -16,7 +16,7 @@ impl<'a> Admission<'a> {
         Admission { method, budget }
     }
 
-    /// Whether a mesh of that size can be solved on while the solution on a mesh of size `kept` stays.
+    /// Admits a mesh of that size if it can be solved on while the solution on a mesh of size `kept` stays in memory.
     ///
     /// # Errors
     /// [`Excess`] with both figures.

@@ -1,4 +1,4 @@
-//! What the terms of the gap will be on a finer mesh, learnt from how they fell before.
+//! Forecast of the terms of the gap on a finer mesh, learnt from their decrease so far.
 //!
 //! Rounds of marking between two solves go by predictions. Where the solution is smooth a term falls with the third power
 //! of its triangle's area. At a point singularity it does not: the gap of the triangles around the point falls like a
@@ -20,7 +20,7 @@ const LEAST: f64 = 0.02;
 /// Below this power the gap does not fall by refining everything: the vertex is a singular point.
 const SINGULAR: f64 = 0.75;
 
-/// What is left of a triangle's area where it was not refined, at least.
+/// A triangle counts as not refined if at least this part of its area is left.
 const WHOLE: f64 = 0.9;
 
 /// How the gap falls.

@@ -81,7 +81,7 @@ pub struct Wanted {
     pub tolerance: f64,
 }
 
-/// What an adaptive run is to reach, and where it stops at the latest.
+/// The goal of an adaptive run, and its limits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goal {
     /// Largest guaranteed relative energy-norm error; infinite where only quantities are wanted.
@@ -97,7 +97,7 @@ pub struct Goal {
     pub known_upper: Option<f64>,
     /// Refinement ends where two meshes in line brought the error down by less than this power of the unknowns.
     pub least_rate: Option<f64>,
-    /// What is refined.
+    /// The way of refinement.
     pub adapt: Adapt,
     /// Part of the gap that the triangles marked in one round carry (Dörfler's bulk parameter), in (0, 1].
     pub bulk: f64,
@@ -128,7 +128,7 @@ pub struct Adapted {
     pub history: Vec<HistoryRow>,
     /// Why refinement stopped before the tolerance was reached.
     pub stopped: Option<String>,
-    /// What to do about that.
+    /// Advice on what to do then.
     pub advice: Option<&'static str>,
 }
 
@@ -268,7 +268,7 @@ impl Measured {
         Some(Seen { mesh: &certified.problem.mesh, elements, terms })
     }
 
-    /// Whether to bisect each triangle or to raise its degree, from what that was worth since `before`. Linear stresses tell nothing of it.
+    /// Learns whether to bisect each triangle or to raise its degree from the gain since `before`. Linear stresses tell nothing of it.
     fn learn_ways(&mut self, before: Option<&Measured>) {
         let before = before.filter(|before| before.solved.elements.largest_degree() > 1);
         if let Some((now, before)) = self.seen().zip(before)
@@ -314,7 +314,7 @@ fn rounding(certified: &Certified, row: &HistoryRow, goal: &Goal, terms: &Indica
     is_rounding.then_some(Stop::Rounding { gap, round_off })
 }
 
-/// Whether the last two meshes were hardly worth their triangles.
+/// True if the last two meshes were hardly worth their triangles.
 fn stalls(history: &[HistoryRow], goal: &Goal) -> bool {
     let slow = |row: &HistoryRow| row.rate.zip(goal.least_rate).is_some_and(|(rate, least)| rate < least);
     history.len() > 2 && history[history.len() - 2..].iter().all(slow)
@@ -361,7 +361,7 @@ fn stopped(reason: &Stop, row: &HistoryRow, goal: &Goal, pace: Option<String>) -
     )
 }
 
-/// Whether the tolerance that was asked for is reached, with the best upper bound of the run.
+/// Checks that the tolerance asked for is reached, with the best upper bound of the run.
 pub fn tolerance_check(certified: &Certified, comparison: &Comparison, tolerance: f64, allow: &Allowances) -> Check {
     const NAME: &str = "bracket/tolerance";
     let allowed = allow.given(NAME).unwrap_or(tolerance);

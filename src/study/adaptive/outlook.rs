@@ -1,4 +1,4 @@
-//! What becomes of an adaptive run at its present pace, so that nobody waits for a tolerance that will not be reached.
+//! Outlook of an adaptive run at its present pace, so that nobody waits for a tolerance that will not be reached.
 
 use super::Goal;
 use super::admission::Admission;

@@ -45,8 +45,8 @@ const DEEPEST: f64 = 1e-6;
 /// The time that a mesh takes grows like this power of its unknowns.
 const TIME: f64 = 1.4;
 
-/// What is left of the error that cannot be refined away ends a run from this part of all of it on, and from the other on
-/// where the last mesh was hardly worth its unknowns: the fields differ around such a place, too.
+/// A run ends where more than this part of the error cannot be refined away, and with more than the other part where the last
+/// mesh was hardly worth its unknowns: the fields differ around such a place, too.
 const MOST_OF_IT: f64 = 0.5;
 const SOME_OF_IT: f64 = 0.02;
 
@@ -60,7 +60,7 @@ pub struct Rounds<'a> {
     forecast: &'a Forecast,
     /// On the mesh that was solved.
     problem: &'a Problem,
-    /// What is kept of it while the next one is solved.
+    /// Size of the solution that is kept while the next mesh is solved.
     kept: Size,
     /// No triangle of less area is refined.
     smallest: f64,
@@ -71,7 +71,7 @@ pub struct Rounds<'a> {
 /// How far a mesh is to go.
 #[derive(Clone, Copy)]
 struct Aim {
-    /// What of the terms may stay.
+    /// Sum of the terms that is small enough.
     enough: f64,
     /// Unknowns of the mesh that was solved.
     solved: f64,
@@ -79,7 +79,7 @@ struct Aim {
     most: f64,
 }
 
-/// What comes after a mesh.
+/// The step after a mesh.
 pub enum Next {
     /// Another mesh.
     Mesh(Box<Stage>),
@@ -87,7 +87,7 @@ pub enum Next {
     Nothing(Stop),
 }
 
-/// What a round came to.
+/// Outcome of a round.
 enum Round {
     /// A finer mesh, and the terms of the gap to expect on it.
     Finer(Box<Stage>, Indicators),
@@ -110,8 +110,8 @@ impl<'a> Rounds<'a> {
         Rounds { goal, admission, forecast, problem, kept, smallest: smallest_area(problem, shortest), seconds }
     }
 
-    /// What comes next; `terms` are those of what is larger by the factor `left` than it may
-    /// be, which the last mesh hardly made smaller where it `stalls`.
+    /// The next mesh, or the reason why there is none. The sum of `terms` belongs to an error or a width that is `left` times as large
+    /// as allowed; `stalls` says that the last mesh hardly reduced it.
     ///
     /// # Errors
     /// [`StudyError::Mesh`].

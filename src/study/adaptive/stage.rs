@@ -54,7 +54,7 @@ pub struct Stage {
     pub parent: Vec<usize>,
     /// The element of each triangle.
     pub elements: Elements,
-    /// What to do with each triangle whose term is large.
+    /// The way to refine each triangle if its term is large.
     pub ways: Vec<Way>,
 }
 
@@ -79,7 +79,7 @@ impl Stage {
         Size::of_degrees(&self.problem, &self.elements)
     }
 
-    /// Whether triangle `t` is to have a higher degree, and may have one.
+    /// True if triangle `t` is to have a higher degree, and may have one.
     pub fn rises(&self, t: usize) -> bool {
         self.ways[t] == Way::Raise && self.elements.degree(t) < MAX_DEGREE
     }

@@ -21,13 +21,13 @@ pub enum Stop {
     NoUpperBound(String),
     /// The last two meshes were hardly worth their triangles.
     Stalled,
-    /// What is left of the error lies on scales that no triangle has.
+    /// The remaining error lies on scales that no triangle has.
     Scales(String),
     /// The gap is no more than what rounding can leave, and stays.
     Rounding {
         /// The gap.
         gap: f64,
-        /// What rounding can leave.
+        /// The gap that rounding can leave.
         round_off: f64,
     },
 }
@@ -55,7 +55,7 @@ impl fmt::Display for Stop {
 }
 
 impl Stop {
-    /// What to do.
+    /// Advice on what to do.
     pub fn advice(&self) -> &'static str {
         match self {
             Stop::Triangles(_) => "Refine further, with a larger --max-triangles, or ask for less.",

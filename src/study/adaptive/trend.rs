@@ -11,7 +11,7 @@ use crate::dual::spread;
 use crate::element::{Elements, MAX_DEGREE};
 use crate::mesh::Triangulation;
 
-/// What to do with a triangle whose term is large.
+/// The way to refine a triangle whose term is large.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
     /// Bisect it.

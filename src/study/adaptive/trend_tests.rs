@@ -1,5 +1,5 @@
-//! What is done with a triangle, where its terms are squares of true approximation errors: of a smooth field, and of fields
-//! with a singular corner.
+//! Choices between bisection and a higher degree where the terms of triangles are squares of true approximation errors: of a smooth
+//! field, and of fields with a singular corner.
 
 use std::sync::Arc;
 

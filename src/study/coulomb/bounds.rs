@@ -12,7 +12,7 @@ use crate::problem::{ContactPair, Interface, Problem, Scales};
 pub struct Bounds(pub Vec<Vec<[f64; 2]>>);
 
 impl Bounds {
-    /// The same bound on all contacts with Coulomb friction.
+    /// One bound for all contacts with Coulomb friction.
     pub fn constant(problem: &Problem, bound: f64) -> Self {
         Bounds(problem.interfaces.iter().map(|interface| vec![[bound; 2]; interface.pairs.len()]).collect())
     }

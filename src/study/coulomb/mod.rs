@@ -34,7 +34,7 @@ const LEFT: f64 = 1e-7;
 /// Bounds that differ by no more than this part are one.
 const SAME: f64 = 1e-6;
 
-/// What is known of a contact with Coulomb friction beside the bracket for the bound that was used.
+/// Results on contact with Coulomb friction beside the bracket for the bound that was used.
 #[derive(Debug, Clone)]
 pub struct Coulomb {
     /// No Coulomb solution has less energy: the lower bound without friction; `None` where nothing else holds the bodies.
@@ -87,7 +87,7 @@ impl Coulomb {
         self.starts.iter().find_map(arrived).unwrap_or(0)
     }
 
-    /// Whether two starts arrived at different bounds.
+    /// True if two starts arrived at different bounds.
     pub fn has_several(&self) -> bool {
         self.apart.is_some_and(|apart| apart > SAME)
     }

@@ -1,4 +1,4 @@
-//! What a report says of Coulomb friction, in numbers and words.
+//! Coulomb friction in a report: numbers and sentences.
 
 use super::{Coulomb, End, From, Start, in_words};
 use crate::compare::ContactSummary;
@@ -89,7 +89,7 @@ impl Coulomb {
     }
 }
 
-/// What a verdict says beside the bracket for the bound that was used.
+/// Sentences of a verdict beside the bracket for the bound that was used.
 pub fn in_verdict(coulomb: &CoulombSummary) -> String {
     let [of_every_solution, _, of_how_many] = &coulomb.statements;
     let all = [of_every_solution, of_how_many].into_iter().chain(&coulomb.wedging);

@@ -56,7 +56,7 @@ impl Fields {
         Fields { mid, stresses: stresses.collect(), maps }
     }
 
-    /// The same with the residual of a claimed solution, triangle by triangle.
+    /// Puts the residual of a claimed solution, triangle by triangle, before the other maps.
     pub fn with_residual(mut self, values: Option<Vec<f64>>) -> Self {
         let map = |values| Map {
             key: "residual".to_string(),
@@ -69,7 +69,7 @@ impl Fields {
     }
 }
 
-/// What each triangle adds to the width of an interval, relative to all of it.
+/// Contribution of each triangle to the width of an interval, relative to the whole width.
 fn of_quantity(answer: &Answer) -> Option<Map> {
     let whole: f64 = answer.interval.shares.iter().sum();
     (whole.is_finite() && whole > 0.0).then(|| Map {

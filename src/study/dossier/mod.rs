@@ -24,7 +24,7 @@ use maps::Fields;
 use provenance::{identifier, provenance};
 use verdict::verdict;
 
-/// What a run found.
+/// The findings of a run.
 #[derive(Debug)]
 pub struct Findings<'a> {
     /// `verify`, `solve` or `certify`.
@@ -49,13 +49,13 @@ pub struct Findings<'a> {
     pub seconds: Vec<(&'static str, f64)>,
     /// Versions of programs that took part.
     pub components: Vec<(String, String)>,
-    /// What explains that a field is not the discrete solution it claims to be.
+    /// Explanations why a field is not the discrete solution it claims to be.
     pub diagnosis: Vec<Diagnosis>,
-    /// Whether a field is handed in as the discrete solution of its mesh.
+    /// True if a field is handed in as the discrete solution of its mesh.
     pub is_claimed: bool,
     /// Why the displacement side is missing, where it should be there.
     pub failure: Option<String>,
-    /// What to do where refinement ended before its tolerance.
+    /// Advice where refinement ended before its tolerance.
     pub advice: Option<&'static str>,
     /// The scene of the other ends of ranges of the data, solved.
     pub other_end: Option<&'a OtherEnd>,

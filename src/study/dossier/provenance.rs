@@ -1,4 +1,4 @@
-//! What made the numbers.
+//! Provenance of the numbers: versions, hashes and threads.
 
 use std::collections::BTreeMap;
 use std::hash::{BuildHasher, Hasher};

@@ -89,7 +89,7 @@ fn given_values(findings: &Findings<'_>) -> Option<String> {
     }
 }
 
-/// What is guaranteed of a field that was handed in, not of the best that the program has.
+/// The guarantee for a field that was handed in, not for the best field that the program has.
 fn of_field(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
     let sharpest = findings.finer.map_or(&findings.certified.bracket, |finer| &finer.bracket);
     let Some((energy, judged)) = energy.zip(findings.comparison.judged.first()) else { return String::new() };

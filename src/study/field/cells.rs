@@ -19,7 +19,7 @@ const RAISED: [usize; 2] = [3, 4];
 /// The cells cut into triangles. A quadrilateral of four nodes with two that are one is a triangle.
 ///
 /// # Errors
-/// What is wrong with a quadrilateral.
+/// A description of the fault of a quadrilateral.
 pub(super) fn parts(cells: &mut [Vec<usize>], points: &[[f64; 2]]) -> Result<Vec<Part>, String> {
     let mut parts = Vec::with_capacity(2 * cells.len());
     for (cell, nodes) in cells.iter_mut().enumerate() {

@@ -32,7 +32,7 @@ const FLAT: f64 = 1e-9;
 struct Content {
     points: Vec<Vec<Option<f64>>>,
     single: bool,
-    /// Whether it is a file of this program, where a linear field has no values at the middles of edges.
+    /// True for a file of this program, where a linear field has no values at the middles of edges.
     #[serde(default)]
     own: bool,
     cells: Vec<Vec<usize>>,

@@ -41,7 +41,7 @@ pub(super) fn precision(values: impl Iterator<Item = f64>, single: bool) -> f64 
     if all >= ENOUGH && cut { (0.5 * 10f64.powi(1 - most as i32)).max(machine) } else { machine }
 }
 
-/// Whether numbers in double precision are those of single precision, of which most use all digits.
+/// True if numbers in double precision are those of single precision, most of which use all their digits.
 fn are_single(values: &[f64]) -> bool {
     // Sixteen of its bits in 23, and simple numbers do without the last seven.
     let full = |x: &&f64| (**x as f32).to_bits() & 0x7f != 0;

@@ -37,7 +37,7 @@ pub(super) struct Matched {
     pub curved: Option<Curved>,
     /// The quadrilaterals.
     pub cells: Vec<Cell>,
-    /// What stands for the field on triangles, where there are quadrilaterals.
+    /// The polynomials on triangles that stand for the field, where there are quadrilaterals.
     pub higher: Option<PlainDisplacement>,
 }
 
@@ -120,7 +120,7 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
     Ok(Matched { degree, vertex, middle, numbering, inserted, off, curved, cells: cells.list, higher })
 }
 
-/// What has been found so far.
+/// Values and places found so far.
 struct Carried<'a> {
     field: &'a ForeignField,
     problem: &'a Problem,

@@ -20,9 +20,9 @@ use crate::problem::{Note, Problem};
 pub struct FieldError {
     /// The file.
     pub file: PathBuf,
-    /// What was found, with the point or triangle it concerns.
+    /// The fault, with the point or triangle it concerns.
     pub what: String,
-    /// What to do.
+    /// The remedy.
     pub remedy: String,
 }
 
@@ -42,7 +42,7 @@ pub struct ForeignField {
     triangles: Vec<Part>,
     /// Displacement of every point; `None` where the file has no finite number.
     values: Vec<Option<[f64; 2]>>,
-    /// Whether the displacement is stored in single precision.
+    /// True if the displacement is stored in single precision.
     single: bool,
     /// Rounding of the displacements relative to their size: that of the digits the file keeps.
     precision: f64,
@@ -69,7 +69,7 @@ pub struct FieldArrays {
     pub triangles: Vec<Vec<usize>>,
     /// Two or three components of the displacement of every point.
     pub displacement: Vec<Vec<f64>>,
-    /// Whether the displacement was kept in single precision.
+    /// True if the displacement was kept in single precision.
     pub single: bool,
 }
 
@@ -91,7 +91,7 @@ impl ForeignField {
         self
     }
 
-    /// The same field with coordinates counted from `origin`; `None` where they are already.
+    /// This field with coordinates counted from `origin`; `None` where they already are.
     fn about(&self, origin: [f64; 2]) -> Option<Self> {
         let points = || self.points.iter().map(|p| [p[0] - origin[0], p[1] - origin[1]]).collect();
         (origin != [0.0; 2]).then(|| ForeignField { points: points(), ..self.clone() })
@@ -102,7 +102,7 @@ impl ForeignField {
         self.files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(" + ")
     }
 
-    /// Whether a file is a result of CalculiX.
+    /// True if a file is a result of CalculiX.
     pub fn is_of_calculix(&self) -> bool {
         let ending = |name: &str| Path::new(name).extension().map(|ending| ending.to_ascii_lowercase());
         self.files.iter().any(|(name, _)| ending(name).is_some_and(|ending| ending == "frd" || ending == "dat"))
@@ -113,7 +113,7 @@ impl ForeignField {
         &self.sha256
     }
 
-    /// Whether the file keeps seven digits of the displacement, so that supports and contact can be met to seven only.
+    /// True if the file keeps only seven digits of the displacement, so that supports and contact can be met to seven digits at best.
     pub fn is_single_precision(&self) -> bool {
         self.single
     }
@@ -127,7 +127,7 @@ impl ForeignField {
         Ok(self.matched(problem, seconds)?.0)
     }
 
-    /// The same, with remarks where points of the file are only nearly vertices of the mesh, or fewer than these.
+    /// As [`Self::candidate`], with remarks where points of the file are only nearly vertices of the mesh, or fewer than these.
     ///
     /// # Errors
     /// As [`Self::candidate`].

@@ -13,7 +13,7 @@ use crate::vector::distance;
 
 /// Distance, in parts of the longest edge of a triangle, within which two points are one.
 const CLOSE: f64 = 1e-6;
-/// The same for coordinates that a writer has rounded to five or six digits: in parts of the largest coordinate of the file,
+/// As [`CLOSE`], for coordinates that a writer has rounded to five or six digits: in parts of the largest coordinate of the file,
 /// and of the longest edge, beyond which a triangle would be another one.
 const ROUNDED: f64 = 1e-5;
 const DISTORTED: f64 = 0.02;
@@ -71,7 +71,7 @@ impl Place {
 pub(super) struct Places {
     /// Triangle by triangle.
     pub triangles: Vec<Place>,
-    /// Whether the file has the triangles from before contact cut some of them.
+    /// True if the file has the triangles from before contact cut some of them.
     pub uncut: bool,
 }
 
@@ -254,7 +254,7 @@ pub(super) fn tolerance(field: &ForeignField, corners: &[[f64; 2]; 3]) -> f64 {
     tolerance_of(field, longest(corners))
 }
 
-/// The same for cells with edges of this length.
+/// As [`tolerance`], for cells with edges of this length.
 pub(super) fn tolerance_of(field: &ForeignField, length: f64) -> f64 {
     round_off_of(field, length).max((ROUNDED * field.far).min(DISTORTED * length))
 }
