@@ -3,8 +3,9 @@
 use std::fmt;
 use std::io::{IsTerminal, Write};
 
-use crate::cli::Exit;
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, MietteHandler, MietteHandlerOpts, ReportHandler};
+
+use crate::cli::Exit;
 
 /// Columns of a report that no terminal limits; lines are not wrapped there, so that they can be searched.
 const UNLIMITED: usize = 10_000;
