@@ -39,7 +39,7 @@ pub struct UpperBound {
     pub widening: f64,
     /// 𝓛(v) + Π(λ_h) in local terms.
     pub local: LocalGap,
-    /// What was made on the way to it, where it is to be used again.
+    /// Data made on the way to it, kept where they are to be used again.
     pub prepared: Prepared,
 }
 
@@ -50,7 +50,7 @@ impl UpperBound {
         Self::of_terms(problem, displacement, terms)
     }
 
-    /// The same with all terms that there are.
+    /// Builds the bound from precomputed energy terms.
     pub fn of_terms(problem: &Problem, displacement: Displacement, terms: UpperTerms) -> Self {
         let UpperTerms { potential, widening, triangles, pairs, springs } = terms;
         let local = LocalGap::of(problem, triangles, pairs, springs);
@@ -97,7 +97,7 @@ impl Bracket {
         Self::of_terms(problem, dual, lower, free)
     }
 
-    /// The same with what was found of both sides.
+    /// Builds the bracket from the terms of the lower bound and from the upper bound.
     pub fn of_terms(
         problem: &Problem,
         dual: &DualSolution,
@@ -119,8 +119,8 @@ impl Bracket {
         self.complementary.lower() - self.lower_widening
     }
 
-    /// Whether the gap to the upper bound `upper` is a relative energy-norm error of at most `enough`, or none but round-off
-    /// of the data.
+    /// True if the gap to the upper bound `upper` is a relative energy-norm error of at most `enough`, or no more than round-off of the
+    /// data.
     pub fn tells(&self, upper: f64, enough: f64) -> bool {
         upper - self.lower() <= self.round_off || self.relative_error(upper) <= enough
     }

@@ -31,7 +31,7 @@ pub struct Complementary {
     pub springs: f64,
     /// Sum of the absolute values of all terms.
     pub magnitude: f64,
-    /// What a relative error of one in every number that enters could change: Σ |∂/∂x| |x|.
+    /// Largest change caused by a relative error of one in every number that enters: Σ |∂/∂x| |x|.
     pub sensitivity: f64,
 }
 
@@ -97,7 +97,7 @@ pub fn complementary(problem: &Problem, stress: &StressField) -> Complementary {
     complementary_of(problem, stress, Counted::ALL)
 }
 
-/// What `counted` has of it.
+/// As [`complementary`], restricted to the triangles, edges and pairs of `counted`.
 pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> Complementary {
     let mesh = &problem.mesh;
     let materials = problem.materials();
@@ -147,7 +147,7 @@ pub fn complementary_of(problem: &Problem, stress: &StressField, counted: Counte
     }
 }
 
-/// What the pressures of `stress` do at most on the part of the gaps that lies above their polynomials, thickness included.
+/// Upper bound of the work of the pressures of `stress` on the part of the gaps above their polynomials, thickness included.
 pub fn work_of_excess(problem: &Problem, stress: &StressField, counted: Counted<'_>) -> f64 {
     let curved = problem.pairs().enumerate().filter(|(p, pair)| pair.bow.excess() > 0.0 && counted.pair(*p));
     let work = curved.map(|(_, pair)| excess_work(pair, &contact_traction(problem, stress, pair)));
@@ -198,7 +198,7 @@ pub struct Potential {
     pub work: f64,
     /// Sum of the absolute values of all terms.
     pub magnitude: f64,
-    /// What a relative error of one in every number that enters could change: Σ |∂/∂x| |x|.
+    /// Largest change caused by a relative error of one in every number that enters: Σ |∂/∂x| |x|.
     pub sensitivity: f64,
 }
 
@@ -219,7 +219,7 @@ pub fn potential(problem: &Problem, v: &Displacement) -> Potential {
     potential_of(problem, v, Counted::ALL)
 }
 
-/// What `counted` has of it.
+/// As [`potential`], restricted to the triangles, edges and pairs of `counted`.
 pub fn potential_of(problem: &Problem, v: &Displacement, counted: Counted<'_>) -> Potential {
     let mesh = &problem.mesh;
     let materials = problem.materials();
@@ -397,8 +397,7 @@ fn absolute(s: [f64; 3]) -> f64 {
     s[0].abs() + s[1].abs() + s[2].abs()
 }
 
-/// What relative errors of the edge vectors do to the area, relative to it: one for a good triangle, its aspect ratio
-/// for a sliver.
+/// Relative error of the area per relative error of the edge vectors: one for a good triangle, its aspect ratio for a sliver.
 pub fn shape(corners: [[f64; 2]; 3]) -> f64 {
     let square = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
     let [a, b, c] = corners;

@@ -1,9 +1,9 @@
-//! What friction has of the energies and of the gap between them.
+//! Energy of friction, and its share of the gap.
 //!
-//! With the jump j = (v' − v'')·t̂ along a pair and the traction t along t̂ on the first side, |t| ≤ τ̄, the potential energy has ∫ τ̄ |j|, the
-//! complementary energy nothing, and the gap ∫ (τ̄ |j| + t j), which is never negative. Where the jump changes its sign along a
-//! pair the integral of its absolute value is bounded from above, so that 𝓛(v) is no less than the energy. On bodies of revolution τ̄ and t
-//! are those times the distance from the axis.
+//! With the jump j = (v' − v'')·t̂ along a pair and the traction t along t̂ on the first side, |t| ≤ τ̄, friction adds ∫ τ̄ |j| to the
+//! potential energy, nothing to the complementary energy, and ∫ (τ̄ |j| + t j), which is never negative, to the gap. Where the jump changes
+//! its sign along a pair the integral of its absolute value is bounded from above, so that 𝓛(v) is no less than the energy. On bodies of
+//! revolution τ̄ and t are multiplied by the distance from the axis.
 
 use super::jump::jumps_along;
 use super::rounding::counted::Counted;

@@ -1,9 +1,9 @@
-//! What tractions of a higher degree than one cost the bracket.
+//! Widening of the bracket by tractions of a higher degree than one.
 //!
-//! With r the rest of the traction that its nearest affine one leaves on the edges, and σ_r the stress of least energy that balances it
-//! on the triangles beside them, v is admissible for both loads, and λ + σ_r for the polynomial. So the exact energy lies above
-//! −Π(λ) − ∫ r·v − Σ √(2 gap_T) ‖σ_r‖_T − ½ ‖σ_r‖², because ∫ (aλ + ε0 − e(v)):σ_r is no larger than the third term and ∫ e(v):σ_r = ∫ r·v,
-//! and below 𝓛(v) − ∫ r·v, both with 𝓛 and Π of the affine loads.
+//! With r the difference between the traction and its nearest affine one on the edges, and σ_r the stress of least energy that balances r
+//! on the triangles beside them, v is admissible for both loads, and λ + σ_r for the polynomial one. So the exact energy lies above −Π(λ) −
+//! ∫ r·v − Σ √(2 gap_T) ‖σ_r‖_T − ½ ‖σ_r‖², because ∫ (aλ + ε0 − e(v)):σ_r is no larger than the third term and ∫ e(v):σ_r = ∫ r·v, and
+//! below 𝓛(v) − ∫ r·v, both with 𝓛 and Π of the affine loads.
 
 use std::collections::BTreeMap;
 
@@ -14,15 +14,15 @@ use crate::element::{Displacement, block};
 use crate::load::BodyForce;
 use crate::problem::{Oscillation, Problem};
 
-/// What rounding may leave of the balance of a rest, relative to the traction.
+/// Round-off allowed in the balance of r, relative to the traction.
 const BALANCED: f64 = 1e-9;
 
-/// What it costs the upper bound of `v`, thickness included.
+/// Amount by which r raises the upper bound of `v`, thickness included.
 pub fn above(problem: &Problem, v: &Displacement) -> f64 {
     if problem.has_polynomial_tractions() { (-work(problem, &problem.oscillations(), v)).max(0.0) } else { 0.0 }
 }
 
-/// What it costs the lower bound; `free` has a displacement and its gap on every triangle. Nothing is left without one.
+/// Amount by which r lowers the lower bound; `free` has a displacement and its gap on every triangle. Infinite without `free`.
 pub fn below(problem: &Problem, free: Option<(&Displacement, &[f64])>) -> f64 {
     if !problem.has_polynomial_tractions() {
         return 0.0;
@@ -31,7 +31,7 @@ pub fn below(problem: &Problem, free: Option<(&Displacement, &[f64])>) -> f64 {
     work(problem, &problem.oscillations(), v).max(0.0) + balanced(problem, gaps).values().sum::<f64>()
 }
 
-/// What the rests of tractions add to the width of the bracket, by the triangles beside them.
+/// Contributions of r to the width of the bracket, by the triangles beside its edges.
 pub fn shares(problem: &Problem, v: &Displacement, gaps: &[f64]) -> Vec<(usize, f64)> {
     if !problem.has_polynomial_tractions() {
         return Vec::new();

@@ -1,12 +1,12 @@
-//! What springs and elastic layers have of the energies and of the gap between them.
+//! Energies of springs and elastic layers, and their share of the gap.
 //!
 //! With the traction t = T(λ)·d on the first side and the jump j = (v' − v'')·d along each direction d of stiffness k, their potential
 //! energy is ½ ∫ k j², their complementary energy ∫ t²/2k, and their part of the gap ½ ∫ (k j + t)²/k, which is never negative.
 //!
-//! Beside an axis of revolution tractions are those times its distance r, and k counts r times: ½ ∫ k r j², ∫ t²/2kr, ½ ∫ (k r j + t)²/kr.
+//! On a body of revolution tractions and k are multiplied by the distance r from the axis: ½ ∫ k r j², ∫ t²/2kr, ½ ∫ (k r j + t)²/kr.
 //!
-//! Elastic contact resists what the jump exceeds the gap g by: with d = j − g these are ½ ∫ k d₊², ∫ t²/2k − ∫ t g, and
-//! ½ ∫ (k d₊ + t)²/k + ∫ (−t)(d₊ − d).
+//! Elastic contact resists the excess of the jump over the gap g: with d = j − g these are ½ ∫ k d₊², ∫ t²/2k − ∫ t g, and ½ ∫ (k d₊ +
+//! t)²/k + ∫ (−t)(d₊ − d).
 
 use super::jump::side_coefficients;
 use super::rounding::counted::Counted;
@@ -21,7 +21,7 @@ use crate::vector::dot;
 pub struct SpringEnergy {
     /// The energy.
     pub value: f64,
-    /// What a relative error of one in every number that enters could change.
+    /// Largest change caused by a relative error of one in every number that enters.
     pub sensitivity: f64,
 }
 

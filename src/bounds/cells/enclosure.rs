@@ -29,7 +29,7 @@ pub struct Enclosed {
     pub value: f64,
     /// By how much the rule can be off.
     pub error: f64,
-    /// What a relative error of one in every number that enters could change.
+    /// Largest change caused by a relative error of one in every number that enters.
     pub sensitivity: f64,
 }
 
@@ -112,7 +112,7 @@ fn by_rule(cell: &Quadrilateral, material: &Material, part: Part, points: usize)
     sum
 }
 
-/// What bounds the error of rules on a part of the square.
+/// Quantities that bound the error of rules on a part of the square.
 struct Bound {
     /// |c_ij|, with the shear counted twice.
     moduli: [[f64; 3]; 3],

@@ -28,7 +28,7 @@ use crate::problem::Problem;
 
 pub use enclosure::{Enclosed, strain_energy, strain_energy_by};
 
-/// What a change may add to the energy of a quadrilateral, in parts of it, and be round-off.
+/// Change of the energy of a quadrilateral, in parts of it, up to which a change of the field is round-off.
 const SLIGHT: f64 = 1e-6;
 
 /// A quadrilateral with the triangles of the mesh that make it up.
@@ -43,7 +43,7 @@ pub struct Cell {
     pub nodes: Vec<usize>,
 }
 
-/// What a quadrilateral adds to the energy of the polynomials on its triangles.
+/// Energy of the field on a quadrilateral less that of the polynomials on its triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Correction {
     /// Strain energy and work, thickness included.
@@ -155,7 +155,8 @@ impl UpperBound {
         Self::of_terms(problem, polynomial, terms)
     }
 
-    /// The same for an admissible field: `admissible` differs from `polynomial` where this misses supports or penetrates.
+    /// As [`Self::of_cells`], for an admissible field: `admissible` differs from `polynomial` where the latter misses supports or
+    /// penetrates.
     pub fn of_mended_cells(
         problem: &Problem,
         dual: &DualSolution,

@@ -137,7 +137,7 @@ impl<'a> Turned<'a> {
     }
 }
 
-/// What bounds the error of rules on a part of the square.
+/// Quantities that bound the error of rules on a part of the square.
 struct Bound {
     /// |c_ij| in the plane, with the shear counted twice, and |c_tt|.
     moduli: [[f64; 3]; 3],

@@ -1,4 +1,4 @@
-//! What processes that compute one bracket together say to each other.
+//! Communication between processes that compute one bracket together.
 pub(super) mod on_ranks;
 pub(super) mod pipe;
 
@@ -9,6 +9,6 @@ pub trait Ranks {
     /// Gives numbers to some ranks, and takes numbers from others: `from` has these ranks and how many numbers each gives.
     fn exchange(&self, to: &[(usize, Vec<f64>)], from: &[(usize, usize)]) -> Vec<Vec<f64>>;
 
-    /// What each rank gives, in their order; all ranks call this together.
+    /// Collects the numbers of every rank, in the order of ranks; all ranks call this together.
     fn gather(&self, own: &[f64]) -> Vec<Vec<f64>>;
 }

@@ -40,7 +40,7 @@ pub fn on_ranks(problem: &Problem, dual: &DualSolution, divided: &Divided) -> Re
     }
 }
 
-/// What the ranks make of the parts of `division`.
+/// Runs the ranks on the parts of `division` and returns their results.
 fn found(division: &Division<'_>, dual: &DualSolution, divided: &Divided) -> Result<Vec<Found>, DualError> {
     let ranks = divided.petsc.ranks;
     let scratch = Scratch::new().map_err(|source| DualError::Exchange { path: std::env::temp_dir(), source })?;

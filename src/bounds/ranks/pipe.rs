@@ -10,7 +10,7 @@ use super::Ranks;
 pub struct Pipe<R, W> {
     streams: RefCell<(R, W)>,
     ranks: usize,
-    /// What is done where a stream has ended: the rank is lost, and with it the bracket.
+    /// Called where a stream has ended: the rank is lost, and with it the bracket.
     lost: fn(&io::Error) -> !,
 }
 

@@ -1,4 +1,4 @@
-//! What is counted of a sum over triangles, edges and contact pairs.
+//! Restricts sums over triangles, edges and contact pairs to the entities this rank owns.
 
 use crate::mesh::Triangulation;
 
@@ -15,17 +15,17 @@ impl<'a> Counted<'a> {
         Counted(Some([triangles, pairs]))
     }
 
-    /// Whether triangle `t` is counted.
+    /// True if triangle `t` is counted.
     pub fn triangle(self, t: usize) -> bool {
         self.0.is_none_or(|[triangles, _]| triangles[t])
     }
 
-    /// Whether pair `p` is.
+    /// True if contact pair `p` is counted.
     pub fn pair(self, p: usize) -> bool {
         self.0.is_none_or(|[_, pairs]| pairs[p])
     }
 
-    /// Whether edge `e` of the boundary is: with its triangle.
+    /// True if edge `e` of the boundary is counted, which it is with its triangle.
     pub fn boundary_edge(self, mesh: &Triangulation, e: usize) -> bool {
         mesh.edges[e].triangles[0].is_none_or(|t| self.triangle(t))
     }

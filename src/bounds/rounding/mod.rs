@@ -1,4 +1,4 @@
-//! What rounding can have cost a bound.
+//! Bounds on the error of a bound from rounding.
 //!
 //! Four things separate the numbers computed from bounds in exact arithmetic; each has its term, none is estimated from
 //! the result.

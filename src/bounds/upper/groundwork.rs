@@ -1,4 +1,4 @@
-//! What the upper bound needs of a problem before its dual solution is known.
+//! Parts of the upper bound that can be made before the dual solution is known.
 
 use super::admissible::holds::{Holds, holds};
 use super::admissible::nodes::Nodes;
@@ -37,7 +37,7 @@ impl Groundwork {
         Ok(Groundwork { nodes, holds, rows, made: Made { model, patches } })
     }
 
-    /// The same with the factors of all patches, which otherwise the first sweep makes.
+    /// As [`Self::new`], with the factors of all patches, which otherwise the first sweep makes.
     ///
     /// # Errors
     /// As [`Self::new`].

@@ -1,4 +1,4 @@
-//! What displacements on one mesh share, whatever pulls at them: stiffness, and factors of patches.
+//! Data that displacements on one mesh share, whatever pulls at them: stiffness, and factors of patches.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,7 +10,7 @@ use super::relaxation::patches::Patches;
 #[derive(Clone, Default)]
 pub struct Prepared(Arc<Mutex<Option<Box<Made>>>>);
 
-/// What was made.
+/// The shared data of one mesh.
 pub struct Made {
     /// Loads and bounds of others can take the place of its own.
     pub model: Model,

@@ -145,7 +145,7 @@ impl Local {
     }
 }
 
-/// What the fit needs that is the same for all triangles.
+/// Parts of the fit that are the same for all triangles.
 struct Reference {
     /// Points of each subtriangle: which, the number of the point in its rule, and where it is in its own barycentric coordinates.
     samples: Vec<(usize, usize, [f64; 3])>,

@@ -1,4 +1,4 @@
-//! What the supports leave free at each vertex and inside each edge.
+//! Nodal supports at each vertex and inside each edge.
 
 use std::collections::HashMap;
 
@@ -111,7 +111,7 @@ impl Holds {
         (1..=count).map(move |k| from.towards(&to, k as f64 / (count + 1) as f64))
     }
 
-    /// What holds in the middle of an edge.
+    /// The support in the middle of an edge.
     pub fn middle(&self, e: usize) -> Hold {
         let [from, to] = self.edges[e];
         from.towards(&to, 0.5)
@@ -172,8 +172,8 @@ pub fn holds_at(problem: &Problem, prescribed: impl Fn(usize, usize) -> [f64; 2]
     Ok(holds)
 }
 
-/// Whether some displacement of finite energy meets all supports and contacts: what the supports hold on their own must
-/// agree where they meet, and leave the gap that a contact asks for.
+/// Checks that some displacement of finite energy meets all supports and contacts: supports must agree where they meet, and leave the gap
+/// that a contact requires.
 ///
 /// # Errors
 /// [`NoUpperBound`] names the place.
@@ -205,9 +205,9 @@ pub fn supports_agree(problem: &Problem) -> Result<(), NoUpperBound> {
 /// Penetrations smaller than this, relative to the displacements they come from, are rounding.
 const ROUNDED: f64 = 1e-12;
 
-/// What rounding leaves of a jump less the gap along `pair` where displacements of size `size` have none: they may slide
-/// along it, in a direction that its ends give to few digits where they lie close together, and the gap between sides that
-/// lie apart is a difference of coordinates.
+/// Rounding error of a jump less the gap along `pair` that is exactly zero for displacements of size `size`: they may slide along it, in a
+/// direction that its ends give to few digits where they lie close together, and the gap between sides that lie apart is a difference of
+/// coordinates.
 pub fn jump_rounding(problem: &Problem, pair: &ContactPair, size: f64) -> f64 {
     let ends = pair.first.map(|v| problem.mesh.points[v]);
     let opposite = pair.second.map_or(ends, |second| second.map(|v| problem.mesh.points[v]));

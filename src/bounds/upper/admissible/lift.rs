@@ -17,7 +17,7 @@ use crate::problem::Problem;
 
 /// The penalty beside the largest diagonal entry of the stiffness.
 const PENALTY: f64 = 1e4;
-/// What holds the motions that nothing else does, beside each diagonal entry.
+/// Stiffness against motions that nothing else holds, relative to each diagonal entry.
 const SLIGHT: f64 = 1e-10;
 /// Steps of the multipliers, and rounds of rows that join because the change itself violates them.
 const STEPS: usize = 4;

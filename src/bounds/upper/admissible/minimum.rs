@@ -34,7 +34,7 @@ pub fn free_minimum(k: &[f64], f: &[f64]) -> Option<Step> {
     (gain > 0.0 && gain.is_finite()).then_some(Step { x, gain })
 }
 
-/// The same with rows B and s ≥ 0 (so that x = 0 is allowed); Bx exceeds s by `slack` at most.
+/// As [`free_minimum`], under Bx ≤ s with s ≥ 0 (so that x = 0 is allowed); Bx exceeds s by `slack` at most.
 pub fn minimum(k: &[f64], f: &[f64], b: &DMatrix<f64>, s: &DVector<f64>, slack: f64) -> Option<Step> {
     let free = free_minimum(k, f)?;
     let over = b * &free.x - s;

@@ -17,7 +17,7 @@ use crate::bounds::upper::{Holds, NoUpperBound, Pull, Sliding, Until, holds_at, 
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
 
-/// What all displacements near stresses on one mesh share.
+/// Data that all displacements near stresses on one mesh share.
 pub struct Nearest<'a> {
     problem: &'a Problem,
     holds: Holds,
@@ -106,7 +106,7 @@ impl<'a> Nearest<'a> {
         self.pulled(pull, &self.rows, |model, _| model.energy(&values.values, &Whole) + model.energy_at_rest())
     }
 
-    /// What `ask` says of the energy under `pull` with jumps bounded by `rows`.
+    /// Result of `ask` on the energy under `pull` with jumps bounded by `rows`.
     fn pulled<T>(&self, pull: Pull<'_>, rows: &[Vec<Row>], ask: impl FnOnce(&Model, &mut Patches) -> T) -> T {
         let mut made = self.made.borrow_mut();
         if let Some(made) = made.as_mut() {

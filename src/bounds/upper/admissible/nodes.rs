@@ -139,8 +139,8 @@ impl NodalValues {
         self.nodes.along(mesh, e, mesh.edges[e].vertices[0]).map(|n| self.values[n]).collect()
     }
 
-    /// The same displacement on the nodes `other`: elevated where an edge has a higher degree there, and the one through
-    /// its values at equal steps where it has a lower.
+    /// This displacement on the nodes `other`: elevated where an edge has a higher degree there, and interpolated at equal steps where it
+    /// has a lower one.
     pub fn on(self, mesh: &Triangulation, other: &Nodes) -> Self {
         if self.nodes == *other {
             return self;

@@ -20,12 +20,12 @@ impl Row {
         &self.terms
     }
 
-    /// What the jump may be at most.
+    /// Upper bound of the jump.
     pub fn bound(&self) -> f64 {
         self.gap
     }
 
-    /// The same jump with another bound.
+    /// This jump with another bound.
     pub fn bounded(self, bound: f64) -> Self {
         Row { gap: bound, ..self }
     }
@@ -35,7 +35,7 @@ impl Row {
         self.excess_at(|node| values[node])
     }
 
-    /// The same, with a function that gives the values.
+    /// As [`Self::excess`], with a function that gives the values.
     pub fn excess_at(&self, value: impl Fn(usize) -> [f64; 2]) -> f64 {
         let term = |(node, factor): &(usize, [f64; 2])| {
             let u = value(*node);

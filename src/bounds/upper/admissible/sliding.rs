@@ -1,8 +1,8 @@
-//! What contacts with friction do in the upper bound: pairs that stick in the dual solution do not slide, and all others slide one way.
+//! Contacts with friction in the upper bound: pairs that stick in the dual solution do not slide, and all others slide one way.
 //!
-//! The energy ∫ τ̄ |j_t| has a kink at j_t = 0. Where the sense σ of the sliding is known it is ∫ τ̄ σ j_t, a load, with σ j_t ≥ 0, a bound on
-//! the Bernstein coefficients as that of penetration. Both restrict the displacement and cost energy only where the dual solution has
-//! a state wrong; whatever comes of it is judged by ∫ τ̄ |j_t| itself.
+//! The energy ∫ τ̄ |j_t| has a kink at j_t = 0. Where the sense σ of the sliding is known it is ∫ τ̄ σ j_t, a load, with σ j_t ≥ 0, a bound
+//! on the Bernstein coefficients like that of penetration. Both restrict the displacement and cost energy only where the dual solution has
+//! a wrong state; the result is judged by ∫ τ̄ |j_t| itself.
 
 use super::contact::{give, shift};
 use super::ends::End;
@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-11;
 /// Cosine of the angle between the tangents of two pairs beyond which there is a corner between them: 30°.
 const NO_CORNER: f64 = 0.866;
 
-/// What a pair with friction may do.
+/// Motion allowed to a pair with friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion {
     /// Both sides move alike along t̂.
@@ -47,8 +47,8 @@ struct Rubbing<'a> {
 }
 
 impl Sliding {
-    /// What the dual solution says of the pairs, by its tractions and the moments of its displacement. Pairs beside those that slide may
-    /// slide as they do, where the traction is against that.
+    /// Motions of the pairs from the dual solution, by its tractions and the moments of its displacement. Pairs next to sliding ones may
+    /// slide as those do, where the traction opposes it.
     pub fn of(problem: &Problem, stress: &StressField, moments: &SideValues<[f64; 2]>) -> Self {
         if !problem.has_friction() {
             return Sliding::default();
@@ -177,14 +177,14 @@ impl Sliding {
     }
 }
 
-/// Whether two pairs have a vertex in common, and no corner there.
+/// True if two pairs have a vertex in common, and no corner there.
 fn goes_on(one: &ContactPair, other: &ContactPair) -> bool {
     let joined = one.first.iter().any(|v| other.first.contains(v));
     let tangents = one.friction.zip(other.friction).map(|(a, b)| dot(a.tangent.at(0.5), b.tangent.at(0.5)));
     joined && tangents.is_some_and(|cosine| cosine > NO_CORNER)
 }
 
-/// What a pair does with the coefficients `t` of its tangential traction, known up to `rounding`, and the mean of its sliding.
+/// Motion of a pair from the coefficients `t` of its tangential traction, known up to `rounding`, and the mean of its sliding.
 fn motion(friction: &Friction, mean: f64, t: &[f64], rounding: f64) -> Motion {
     let bounds = friction.coefficients(t.len().max(1) - 1);
     let at_bound = |(t, bound): (&f64, &f64)| t.abs() + rounding >= AT_BOUND * bound;

@@ -42,7 +42,7 @@ pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> (Cow<'a, Proble
     (Cow::Owned(wider), stored)
 }
 
-/// Whether an elastic contact is stiffer than what touches it, on the scale of its edge.
+/// True if an elastic contact is stiffer than the bodies it touches, on the scale of its edge.
 fn is_stiff(problem: &Problem, pair: &ContactPair) -> bool {
     let of = |e: usize| problem.mesh.edges[e].triangles[0].map(|t| problem.mesh.body[t]);
     let softest = pair.edges.iter().flatten().filter_map(|e| of(*e)).map(|body| problem.material(body).young()[0]);

@@ -19,7 +19,7 @@ pub struct BedEnergy {
     axes: [[f64; 2]; 2],
     /// k l along both axes.
     stiffness: [f64; 2],
-    /// What pulls at the nodes of the first side, and at those of the second the other way.
+    /// Forces at the nodes of the first side; on those of the second they act the other way.
     load: Vec<[f64; 2]>,
     length: f64,
     weight: EdgeWeight,

@@ -16,7 +16,7 @@ pub fn fill(problem: &Problem, field: &NodalValues, model: &Model) -> Displaceme
     completed(problem, field, |t, k, block| inside(k, model.energies.of(t), model.translations, block))
 }
 
-/// The same with the coefficients inside each triangle as [`fill`] has found them elsewhere.
+/// As [`fill`], with coefficients inside each triangle that `fill` found elsewhere.
 pub fn filled_with<'a>(
     problem: &Problem,
     field: &NodalValues,

@@ -11,7 +11,7 @@ use crate::bounds::upper::relaxation::groups::Group;
 use crate::bounds::upper::relaxation::share::Share;
 use crate::problem::{ContactPair, Problem};
 
-/// What does not change while patches move.
+/// Energy and conditions that stay the same while patches move.
 #[derive(Debug)]
 pub struct Model {
     /// ½uᵀKu − fᵀu of every triangle, `None` where its inside has no unique minimum.
@@ -46,7 +46,7 @@ impl Model {
         Self::shaped(problem, holds, nodes, groups, pull, like)
     }
 
-    /// The same where the first triangle of a shape has the stiffness of one with the corners `like`.
+    /// As [`Self::new`], but the first triangle of a shape has the stiffness of one with the corners `like`.
     pub fn shaped(
         problem: &Problem,
         holds: &Holds,
@@ -82,7 +82,7 @@ impl Model {
         }
     }
 
-    /// The same with another load and other bounds on the jumps.
+    /// Replaces the load and the bounds on the jumps, and leaves out friction.
     pub fn with(&mut self, problem: &Problem, nodes: &Nodes, groups: &[Vec<Row>], pull: Pull<'_>) {
         self.energies.reload(problem, nodes, pull);
         let [rows, beds] = self.without_friction;
@@ -93,7 +93,7 @@ impl Model {
         self.rows = groups.iter().flatten().cloned().collect();
     }
 
-    /// The same with the friction of contacts that slide and stick like this.
+    /// Adds the friction of contacts that slide and stick as `sliding` has them.
     pub fn rub(&mut self, problem: &Problem, nodes: &Nodes, sliding: &Sliding) {
         let pairs: Vec<&ContactPair> = problem.pairs().collect();
         let ends = |number: usize| pairs[number].first.iter().chain(pairs[number].second.iter().flatten()).copied();
@@ -114,7 +114,7 @@ impl Model {
         self.beds.iter_mut().map(|bed| bed.touch(values)).sum()
     }
 
-    /// Whether nodes may move in the same directions where `holds` hold them.
+    /// True if nodes held by `holds` may move in the same directions.
     pub fn is_free_as(&self, holds: &Holds, nodes: &Nodes) -> bool {
         self.free == directions(holds, nodes)
     }
@@ -152,7 +152,7 @@ impl Model {
         &nodes[start[t]..start[t + 1]]
     }
 
-    /// Whether a node moves with the vertices of a group.
+    /// True if a node moves with the vertices of a group.
     pub fn moves(&self, node: usize, group: &Group) -> bool {
         match node.checked_sub(self.vertices) {
             None => group.vertices.contains(&node),

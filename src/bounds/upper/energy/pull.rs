@@ -1,4 +1,4 @@
-//! What pulls at a displacement.
+//! Loads that pull at a displacement.
 
 use super::split::{self, load};
 use crate::bounds::springs::OnSprings;
@@ -8,23 +8,23 @@ use crate::element::revolved::{Held, Tensor};
 use crate::load::{Affine, BodyForce};
 use crate::problem::{Condition, Problem};
 
-/// What pulls at a displacement: the energy is ½‖σ(v)‖²_a less the work of these.
+/// Loads that pull at a displacement: the energy is ½‖σ(v)‖²_a less their work.
 #[derive(Debug, Clone, Copy)]
 pub struct Pull<'a> {
     /// Body forces and tractions of the scene, times this.
     pub scene: f64,
-    /// Whether the initial strains of the scene pull too: forces ∫ cε0 : e(v).
+    /// True if the initial strains of the scene pull too: forces ∫ cε0 : e(v).
     pub initial: bool,
     /// Forces ∫ σ : e(v) of a stress on every triangle. In a body of revolution it is one that balances minus the body forces of the
     /// scene times [`Self::scene`].
     pub stress: Option<&'a StressField>,
     /// Work ∫ f j(v) of forces on the jumps of springs.
     pub springs: Option<&'a OnSprings>,
-    /// In a body of revolution what a stress has beside its weighted form.
+    /// In a body of revolution the terms of a stress that its weighted form leaves out.
     pub beside: Option<Beside<'a>>,
 }
 
-/// What a stress has in a body of revolution beside its weighted form, times a factor.
+/// Terms of a stress in a body of revolution that its weighted form leaves out, times a factor.
 #[derive(Debug, Clone, Copy)]
 pub struct Beside<'a> {
     /// The factor.

@@ -50,7 +50,7 @@ impl Split {
         split
     }
 
-    /// The same of a triangle of the given section.
+    /// As [`Self::new`], for a triangle of the given section.
     pub fn of(section: Section, k: usize, corners: [[f64; 2]; 3], material: &Material) -> Self {
         let Some(revolved) = section.revolved() else { return Self::new(k, corners, material) };
         let all = 2 * split_len(k);
@@ -189,7 +189,7 @@ pub fn pull_linear(
 /// Stiffness between two nodes: xx, xy, yx, yy with x and y of the first before those of the second.
 type Pair = [f64; 4];
 
-/// What the stiffness of a subtriangle has of the products of gradients.
+/// Coefficients of the gradient products in the stiffness of a subtriangle.
 struct Reference {
     entries: Vec<Entry>,
     /// Weight, i and j of a product.

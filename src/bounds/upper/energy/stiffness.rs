@@ -20,7 +20,7 @@ pub struct Stiffness {
     /// L of K_ii = L Lᵀ, packed, and L⁻¹ K_ib row by row.
     factor: Box<[f64]>,
     across: Box<[f64]>,
-    /// What coefficients of the boundary have of its nodes; empty where these are the same.
+    /// Factors from nodal values to coefficients of the boundary ([`raising`]); empty where the two are the same.
     raising: Vec<(usize, usize, f64)>,
 }
 
@@ -32,7 +32,7 @@ impl Stiffness {
         Self::of(k, degrees, Split::new(k, corners, material))
     }
 
-    /// The same from the stiffness of a triangle with its inside.
+    /// Eliminates the inside of the full stiffness of a triangle; `None` where the inside has no unique minimum in numbers.
     pub fn of(k: usize, degrees: [usize; 3], split: Split) -> Option<Self> {
         // With K_ii = L Lᵀ and Y = L⁻¹ K_ib, what is left is K_bb − YᵀY.
         let (boundary, inside) = (split.boundary, split.inside);
@@ -135,7 +135,7 @@ wide! {
     }
 }
 
-/// The same for N numbers.
+/// As [`subtract`], for N numbers.
 #[inline(always)]
 fn subtract_of<const N: usize>(matrix: &[f64], u: &[f64], out: &mut [f64]) {
     let (rows, _) = matrix.as_chunks::<N>();
@@ -163,7 +163,8 @@ fn lowered(matrix: &[f64], boundary: usize, size: usize, raising: &[(usize, usiz
     out
 }
 
-/// What coefficient i of the boundary in degree `k` has of node a where the sides have the given degrees: i, a and the factor.
+/// Factors from nodal values to the boundary coefficients of degree `k` where the sides have the given degrees: coefficient i, node a and
+/// the factor.
 fn raising(k: usize, degrees: [usize; 3]) -> Vec<(usize, usize, f64)> {
     let mut entries: Vec<(usize, usize, f64)> = (0..3).map(|corner| (corner, corner, 1.0)).collect();
     let mut first = 3;

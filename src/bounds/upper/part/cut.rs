@@ -79,7 +79,7 @@ impl Cut {
         }
     }
 
-    /// What holds there.
+    /// The nodal supports there.
     pub fn holds(&self, holds: &Holds) -> Holds {
         Holds {
             vertices: self.vertices.iter().map(|v| holds.vertices[*v]).collect(),

@@ -167,7 +167,7 @@ impl<'a> Division<'a> {
         (self.after, self.all) = (after, all);
     }
 
-    /// What rank `rank` needs.
+    /// The part of the problem that rank `rank` needs.
     pub fn part(&self, rank: usize, stress: &StressField, moments: &SideValues<[f64; 2]>) -> Part {
         let there = |t: &usize| self.at_contact[*t] || self.near(*t).contains(&rank);
         let cut = Cut::new(self.problem, &self.nodes, (0..self.owner.len()).filter(there).collect());

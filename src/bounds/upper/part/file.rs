@@ -138,7 +138,7 @@ fn one<T: Copy>(list: Vec<T>) -> io::Result<T> {
     list.first().copied().ok_or_else(|| io::ErrorKind::InvalidData.into())
 }
 
-/// What energies and contact take of a scene: materials and loads on bodies.
+/// Writes the data of a scene that energies and contact need: materials and loads on bodies.
 fn write_scene(out: &mut Writer<impl Write>, scene: &Scene) -> io::Result<()> {
     let kinematics = match scene.kinematics {
         Kinematics::PlaneStrain => 0,

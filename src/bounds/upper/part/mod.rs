@@ -35,7 +35,7 @@ use crate::bounds::rounding::terms::{LowerTerms, UpperTerms};
 use crate::element::{SideValues, StressField};
 use crate::problem::Problem;
 
-/// What a rank needs of a problem and its dual solution.
+/// Data of a problem and its dual solution that a rank needs.
 #[derive(Debug, Clone)]
 pub struct Part {
     /// The problem on the triangles that are there.
@@ -43,7 +43,7 @@ pub struct Part {
     /// λ_h and the moments of its displacement.
     stress: StressField,
     moments: SideValues<[f64; 2]>,
-    /// What the supports of the whole problem leave free: a straight side may go on beyond the part.
+    /// Nodal supports of the whole problem: a straight side may go on beyond the part.
     holds: Holds,
     /// Corners of the triangle whose stiffness each one has.
     like: Vec<[[f64; 2]; 3]>,
@@ -57,12 +57,12 @@ pub struct Part {
     own_pairs: Vec<bool>,
     /// Nodes whose values are the result of this rank.
     own_nodes: Vec<usize>,
-    /// What goes from rank to rank after each front, and of all nodes.
+    /// Values sent between ranks after each front, and those of all nodes.
     after: Vec<Traffic>,
     all: Traffic,
 }
 
-/// What a rank finds.
+/// Results of a rank.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Found {
     /// Values of its nodes, as relaxing leaves them.

@@ -197,7 +197,7 @@ fn agree(scene: &str, of: &Certified) {
     }
 }
 
-/// The same sums, but for the order of their terms; the last ones are sums of rounding errors.
+/// Checks that sums agree but for the order of their terms; the last two are sums of rounding errors.
 #[track_caller]
 fn alike<const N: usize>(a: [f64; N], b: [f64; N], magnitude: f64) {
     for (i, (a, b)) in a.into_iter().zip(b).enumerate() {

@@ -35,9 +35,8 @@ const SWEEPS: usize = 2;
 const MOST_SWEEPS: usize = 500;
 const WORTH_A_SWEEP: f64 = 3e-3;
 
-/// The same where the direction of contact is not the same everywhere: with every polygon along a curve it is another, one body
-/// slides around the other as a whole, and the displacement of the mesh before is off by a little everywhere, which sweeps take
-/// away slowly.
+/// Replaces [`WORTH_A_SWEEP`] where the direction of contact varies: it differs with every polygon along a curve, one body slides around
+/// the other as a whole, and the displacement of the previous mesh is off by a little everywhere, which sweeps remove slowly.
 const WORTH_WHERE_BENT: f64 = 1e-3;
 
 /// Of the smallest gain that is worth a sweep this part, divided among all patches: a patch that gained less, and lies beside none
@@ -86,7 +85,7 @@ impl Until {
         }
     }
 
-    /// What a sweep of all patches that leads to this energy must gain to be worth its time; `part` of the gap is.
+    /// Least gain that makes a sweep of all patches, which leads to this energy, worth its time: the part `part` of the gap.
     fn worth(self, part: f64, energy: f64, rounding: f64) -> f64 {
         match self {
             Until::Gains { least, .. } => least.max(NO_GAIN * energy.abs()),
@@ -100,9 +99,9 @@ impl Until {
         }
     }
 
-    /// What a patch must gain to be moved again with few others, where these are `count`; none where all go on moving. Near a lower
-    /// bound that is where contact does not bend and the bound is good already, so that what is left of the gap lies at corners and ends of
-    /// contact: what spoils a poor one may be everywhere, and move slowly. The energy has to be known, which began with `begun`.
+    /// Least gain for which a patch is moved again with few of all `count` patches; `None` where all go on moving. Near a lower bound this
+    /// requires that contact does not bend and the bound is good already, so that the remaining gap lies at corners and ends of contact:
+    /// the error of a poor bound may be everywhere, and move slowly. The energy, `begun` at first, has to be known to enough digits.
     fn quiet(self, bends: bool, energy: f64, begun: f64, count: f64) -> Option<f64> {
         match self {
             Until::Gains { least, .. } => Some(QUIET * least / count),

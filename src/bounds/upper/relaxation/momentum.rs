@@ -1,4 +1,4 @@
-//! What a sweep moved and the step before it moved, pushed further: conjugate gradients with a sweep as preconditioner.
+//! Extrapolation of a sweep and of the step before it: conjugate gradients with a sweep as preconditioner.
 //!
 //! After a sweep from x to y the energy is minimised over y + a (y − x) + b p, where p is the whole step before. Slow
 //! modes, of which a sweep takes a small part each time, go in one such step nearly as far as they would in dozens.

@@ -109,7 +109,7 @@ impl Patch {
         }
     }
 
-    /// What the step found last moves.
+    /// Moves of the nodes by the step found last.
     pub fn moves(&self, step: &Step) -> impl Iterator<Item = Move> {
         self.unknowns.iter().zip(step.x.iter()).map(|((node, direction), x)| (*node, direction.map(|d| x * d)))
     }
@@ -216,7 +216,7 @@ impl Patch {
         }
     }
 
-    /// What jumps may still grow by: B and s of Bx ≤ s.
+    /// Limits on the growth of jumps: B and s of Bx ≤ s.
     fn inequalities(&self, model: &Model, values: &[[f64; 2]]) -> (DMatrix<f64>, DVector<f64>) {
         let mut b = DMatrix::zeros(self.rows.len(), self.unknowns.len());
         let mut room = DVector::zeros(self.rows.len());

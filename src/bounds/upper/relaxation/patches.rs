@@ -34,11 +34,11 @@ pub fn size(nodes: &Nodes) -> f64 {
     nodes.count() as f64 / of_quadratics.max(1) as f64
 }
 
-/// What relaxing needs of a mesh, whatever the loads.
+/// Data of a mesh for relaxation, whatever the loads.
 pub struct Patches {
     groups: Vec<Group>,
     factors: Factors,
-    /// What each patch gained when it was moved last.
+    /// Gain of each patch when it was moved last.
     gained: Vec<f64>,
     /// Memory for the patch at hand, for each thread that shares them.
     patches: Vec<Mutex<Patch>>,
@@ -175,7 +175,7 @@ impl Patches {
         (0..self.count()).filter(|k| self.groups[*k].triangles.iter().any(gains)).collect()
     }
 
-    /// The same with those that contact bounds.
+    /// As [`Self::to_move`], with the patches that contact bounds.
     pub fn to_move_or_bounded(&self, problem: &Problem, model: &Model, quiet: f64, share: &dyn Share) -> Vec<usize> {
         let bounded = |k: &usize| self.groups[*k].vertices.iter().any(|v| !model.rows_at[*v].is_empty());
         let mut few = self.to_move(problem, model, quiet, share);

@@ -1,15 +1,15 @@
-//! What a process that makes a displacement knows of others that make it with it, each for a share of the mesh.
+//! Communication of a process with others that make a displacement with it, each for a share of the mesh.
 
-/// The share of one process. What is not said of it is that of a process alone: everything is its own, and there is nobody to ask.
+/// The share of one process. Default methods implement the single-process case: everything is its own, and there is nobody to ask.
 ///
 /// All processes call the same methods in the same order, and get the same answers.
 pub trait Share {
-    /// Whether the energy of triangle `t` is counted here; every triangle is counted once.
+    /// True if the energy of triangle `t` is counted here; every triangle is counted once.
     fn has_triangle(&self, _t: usize) -> bool {
         true
     }
 
-    /// Whether row `row` of contact is looked after here.
+    /// True if row `row` of contact is looked after here.
     fn has_row(&self, _row: usize) -> bool {
         true
     }
