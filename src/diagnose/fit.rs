@@ -17,7 +17,7 @@ const TOGETHER: f64 = 1e-2;
 /// undoes the other.
 const MOVED: [f64; 2] = [0.03, 10.0];
 
-/// What a term says about its coefficients.
+/// Turns the coefficients of a term into findings.
 type Told<'a> = Box<dyn Fn(&[f64]) -> Vec<Finding> + 'a>;
 
 struct Term<'a> {
@@ -67,7 +67,7 @@ impl<'a> Terms<'a> {
         pairs.filter(Trial::is_possible).collect()
     }
 
-    /// Whether each of two terms that are fitted together takes a part of the residual that is worth the name.
+    /// True if each of two terms that are fitted together takes a substantial part of the residual.
     fn both_move(&self, terms: [&Term<'a>; 2]) -> bool {
         let columns: Vec<&[f64]> = terms.iter().flat_map(|t| t.columns.iter().map(Vec::as_slice)).collect();
         let (coefficients, _) = fit(&columns, self.residual, self.square);

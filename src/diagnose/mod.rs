@@ -29,7 +29,7 @@ const LEFT: f64 = 1e-4;
 const FLOOR: f64 = 1e-2;
 /// Of the squared residual what the nearest hypothesis has to explain to be worth a name.
 const NAMED: f64 = 0.5;
-/// The same of a hypothesis that asks nothing of whole places: on a coarse mesh they hold half of any residual.
+/// As [`NAMED`], for a hypothesis that drops the equations of whole places: on a coarse mesh these hold half of any residual.
 const NAMED_PLACE: f64 = 0.9;
 /// Hypotheses of this rank and above are such.
 const PLACES: usize = 7;
@@ -71,7 +71,7 @@ impl Finding {
 }
 
 impl Finding {
-    /// Whether it asks for forces on a boundary that is a side of a contact which one of the findings `told` is about.
+    /// True if it asks for forces on a boundary that is a side of a contact named by one of the findings `told`.
     fn is_of_contact_in(&self, told: &[&str]) -> bool {
         let side = self.name.strip_prefix("boundary/").and_then(|rest| rest.strip_suffix("/forces"));
         let about = |side: &str, name: &&str| {
@@ -86,14 +86,14 @@ impl Finding {
 struct Trial {
     /// The simpler the smaller.
     rank: usize,
-    /// What it leaves of the squared residual, relative to it.
+    /// Remaining part of the squared residual.
     left: f64,
     findings: Vec<Finding>,
 }
 
 impl Trial {
-    /// Whether a finding of forces or displacements along supports and contacts stands beside this explanation, and is no
-    /// consequence of it.
+    /// True if a finding of forces or displacements along supports and contacts stands beside this explanation, and is no consequence of
+    /// it.
     fn leaves(&self, finding: &Finding) -> bool {
         let of_values = self.findings.iter().any(|f| f.name == "value" || f.name.starts_with("displacement/"));
         let of_forces = ["/glued", "/open"].iter().any(|end| finding.name.ends_with(end));
@@ -113,7 +113,7 @@ pub struct Energies {
 }
 
 impl Energies {
-    /// The same factor on both energies: that of a thickness, which no displacement shows.
+    /// The thickness, where both energies are off by the same factor: no displacement shows it.
     fn thickness(&self, solution: &Solution<'_>) -> Option<Finding> {
         let [whole, strain] = self.reported?;
         let same = (whole - strain).abs() <= SOLVER && (whole - 1.0).abs() > SOLVER;

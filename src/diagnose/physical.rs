@@ -1,4 +1,4 @@
-//! What a hypothesis must be beside near: something that a person or a program can have done.
+//! Plausibility of hypotheses: besides fitting closely, each has to be something that a person or a program can have done.
 
 use super::words::near;
 use super::{Finding, Trial};
@@ -7,25 +7,25 @@ use super::{Finding, Trial};
 const DECADE: [f64; 2] = [0.1, 10.0];
 /// Powers of ten up to this one are units.
 const UNITS: i32 = 9;
-/// What is left of springs that are missing, relative to those that should be there.
+/// Stiffness below zero that still counts as missing springs, relative to those that should be there.
 const NOTHING: f64 = 1e-3;
 /// One unknown of a hypothesis for this many numbers of the residual, or fewer: with more, it repeats what it should explain.
 const NUMBERS: usize = 4;
 
-/// Whether a positive constant can be `s` times what it should be: within a decade, or by a power of ten.
+/// True if a positive constant can be `s` times its right value: within a decade, or by a power of ten.
 fn is_mistyped(s: f64) -> bool {
     let power = s.log10().round();
     let in_decade = (DECADE[0]..=DECADE[1]).contains(&s);
     s > 0.0 && (in_decade || (power.abs() <= f64::from(UNITS) && near(s, 10.0_f64.powf(power))))
 }
 
-/// Whether `unknowns` are few enough beside the `numbers` that they explain.
+/// True if `unknowns` are few enough beside the `numbers` that they explain.
 pub fn is_simple(unknowns: usize, numbers: usize) -> bool {
     NUMBERS * unknowns <= numbers
 }
 
 impl Finding {
-    /// Whether the number found can be one of a model.
+    /// True if the number found can occur in a model.
     fn is_physical(&self) -> bool {
         let Some(value) = self.value else { return true };
         match self.name.rsplit('/').next().unwrap_or(&self.name) {
@@ -42,13 +42,13 @@ impl Finding {
         }
     }
 
-    /// Whether it says that a body is softer or stiffer.
+    /// True if it makes a body softer or stiffer.
     fn is_of_stiffness(&self) -> bool {
         self.name.starts_with("stiffness/")
             || ["/young", "/poisson", "/stiffness"].iter().any(|end| self.name.ends_with(end))
     }
 
-    /// Whether it takes a load away.
+    /// True if it takes a load away.
     fn takes_load(&self) -> bool {
         (self.name == "loads" || self.name.starts_with("load/") || self.name.ends_with("/body_force"))
             && self.value.zip(self.expected).is_some_and(|(found, given)| near(given + found, given))
@@ -56,7 +56,7 @@ impl Finding {
 }
 
 impl Trial {
-    /// Whether every constant found can be one, and a problem is left: without loads any stiffness is as good as another.
+    /// True if every constant found can occur, and a problem is left: without loads any stiffness is as good as another.
     pub fn is_possible(&self) -> bool {
         let empty = self.findings.iter().any(Finding::takes_load) && self.findings.iter().any(Finding::is_of_stiffness);
         !empty && self.findings.iter().all(Finding::is_physical)

@@ -9,7 +9,7 @@ use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::Problem;
 use crate::scene::{Body, Kinematics};
 
-/// What multiplies strains in a stress: (λ tr e + 2μ e_xx, λ tr e + 2μ e_yy, 2G e_xy), with G = μ in any true material.
+/// Factors of strains in a stress: (λ tr e + 2μ e_xx, λ tr e + 2μ e_yy, 2G e_xy), with G = μ in any true material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moduli {
     /// λ, that of the plane state.
@@ -18,7 +18,7 @@ pub struct Moduli {
     pub mu: f64,
     /// μ in the shear stress.
     pub shear: f64,
-    /// What is not isotropic: stresses (xx, yy, xy) of unit strains ε_xx, ε_yy and ε_xy.
+    /// The anisotropic part: stresses (xx, yy, xy) of unit strains ε_xx, ε_yy and ε_xy.
     pub other: [[f64; 3]; 3],
 }
 
@@ -116,7 +116,7 @@ impl<'a> Space<'a> {
         self.solution.rest.len()
     }
 
-    /// What supports and contacts leave of nodal forces, each over √K_ii.
+    /// Nodal forces less the components that supports and contacts take, each over √K_ii.
     pub fn column(&self, mut forces: Vec<[f64; 2]>) -> Vec<f64> {
         for (node, force) in forces.iter_mut().enumerate() {
             *force = self.solution.hold(node).project(*force);
@@ -140,7 +140,7 @@ impl<'a> Space<'a> {
         Some(&self.solution.candidate.cells[self.cell_of[t]?])
     }
 
-    /// The same where `t` is the first of its triangles, which counts for all of it.
+    /// As [`Self::cell`], but `None` where `t` is not the first of its triangles, which counts for all of them.
     pub fn counted(&self, t: usize) -> Option<Option<&'a Cell>> {
         match self.cell(t) {
             Some(cell) if cell.triangles.first() != Some(&t) => None,
@@ -247,7 +247,7 @@ impl<'a> Space<'a> {
         forces
     }
 
-    /// The same for other displacements.
+    /// As [`Self::stiffness`], for other displacements.
     pub fn stiffness_on(
         &self,
         moduli: impl Fn(usize) -> Option<Moduli>,
@@ -261,7 +261,7 @@ impl<'a> Space<'a> {
         self.column(forces)
     }
 
-    /// What is left of the squared residual, relative to it, with `change` added to it.
+    /// Part of the squared residual that is left with `change` added to the residual.
     pub fn left_with(&self, change: &[f64]) -> f64 {
         self.residual.iter().zip(change).map(|(r, c)| (r + c) * (r + c)).sum::<f64>() / self.square
     }

@@ -5,7 +5,7 @@ use super::Finding;
 /// Numbers this close are one: factors are right to two digits.
 const NEAR: f64 = 5e-3;
 
-/// Whether two numbers are one in a sentence.
+/// True if two numbers read as one in a sentence.
 pub fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= NEAR * a.abs().max(b.abs())
 }
@@ -26,7 +26,7 @@ pub fn share(x: f64) -> String {
     if x >= 0.99995 { "more than 99.99 %".to_string() } else { format!("{:.1} %", 100.0 * x.max(0.0)) }
 }
 
-/// What it is that has a factor, in words: missing, of the wrong sign, of another unit, or larger.
+/// Describes the factor `s` of `what`: missing, of the wrong sign, of another unit, or larger.
 pub fn factor(what: &str, s: f64) -> String {
     let thousands = s.abs().log10() / 3.0;
     let unit = thousands.round() != 0.0 && (thousands - thousands.round()).abs() < 1e-3;

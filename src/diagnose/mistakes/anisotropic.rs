@@ -50,7 +50,7 @@ fn trial(space: &Space<'_>, law: impl Fn(usize) -> Option<Elasticity>, name: Str
     Trial { rank: 0, left: space.left_with(&change), findings: vec![Finding::new(name, None, None, sentence)] }
 }
 
-/// The same of one body whose initial strain stays what it is.
+/// As [`trial`], for one body whose initial strain stays as it is.
 fn with_own_initial(space: &Space<'_>, (body, law): (usize, &Elasticity), name: &str, sentence: &str) -> Trial {
     let kinematics = space.problem().scene.kinematics;
     let change = space.stiffness(|b| {
@@ -61,7 +61,7 @@ fn with_own_initial(space: &Space<'_>, (body, law): (usize, &Elasticity), name: 
     Trial { rank: 0, left: space.left_with(&change), findings: vec![Finding::new(name, None, None, sentence)] }
 }
 
-/// What bodies of other materials add to the residual; with the material its initial strain is another one.
+/// Change of the residual by bodies of other materials; with the material its initial strain changes too.
 pub fn change(space: &Space<'_>, other: impl Fn(usize) -> Option<Material>) -> Vec<f64> {
     let scene = &space.problem().scene;
     let mut change = space.stiffness(|b| {
@@ -80,7 +80,7 @@ pub fn change(space: &Space<'_>, other: impl Fn(usize) -> Option<Material>) -> V
     change
 }
 
-/// What is mistaken most often in such a law, as far as a material results that is another one.
+/// The commonest mistakes in such a law, where they result in another material.
 fn mistakes(law: &Elasticity) -> Vec<Mistake> {
     let angle = law.angle();
     let to = |other: f64| law.turned(other - angle);

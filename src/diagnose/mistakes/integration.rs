@@ -105,7 +105,7 @@ fn on<'a>(space: &Space<'_>, cell: &'a Cell) -> On<'a> {
     On { cell: &cell.field, values: cell.values(space.solution.candidate), moduli }
 }
 
-/// What the other nodal forces `made` have beside those of full integration.
+/// Nodal forces `made` less those of full integration.
 fn change(space: &Space<'_>, made: &dyn Fn(&On<'_>) -> Vec<[f64; 2]>) -> Vec<f64> {
     added(space, &|own| {
         let points = space.solution.points.unwrap_or(cells::full(own.cell));

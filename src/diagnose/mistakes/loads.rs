@@ -144,7 +144,7 @@ fn parts<'a>(space: &'a Space<'a>, b: usize, terms: &mut Terms<'a>) {
     }
 }
 
-/// What is wrong with the components of the traction on `on`; `parts` say which component acts in which direction.
+/// Findings on the components of the traction on `on`; `parts` say which component acts in which direction.
 fn components(on: &str, given: [bool; 2], parts: &[[usize; 2]], x: &[f64]) -> Vec<Finding> {
     let axis = ["x", "y"];
     let factor_of = |from: usize, to: usize| {

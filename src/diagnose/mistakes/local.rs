@@ -85,8 +85,8 @@ impl<'a> Places<'a> {
         Trial { rank: 4, left, findings: vec![finding] }
     }
 
-    /// What is left where nothing is asked of the given nodes, nor of those that contacts tie to them; all of it where these
-    /// are a large part of the mesh.
+    /// Part of the squared residual that is left without the equations of the given nodes, and of those that contacts tie to them; all of
+    /// it where these are a large part of the mesh.
     fn without(&self, nodes: impl IntoIterator<Item = usize>) -> f64 {
         let mut all: BTreeSet<usize> = nodes.into_iter().collect();
         for site in &self.space.solution.sites.list {

@@ -11,7 +11,7 @@ struct Shares {
     what: &'static str,
     /// Parts of a traction for the two ends and the middle of an edge.
     edge: [f64; 3],
-    /// Whether ends have their own value of the traction, and not the mean of the edge.
+    /// True if ends have their own value of the traction, and not the mean of the edge.
     own: bool,
     /// Parts of a body force for each corner and each middle of a triangle.
     triangle: [f64; 2],
@@ -90,7 +90,7 @@ fn tractions(space: &Space<'_>, shares: &Shares) -> Vec<[f64; 2]> {
     forces
 }
 
-/// The same of the body forces.
+/// As [`tractions`], for the body forces.
 fn body_forces(space: &Space<'_>, shares: &Shares) -> Vec<[f64; 2]> {
     let problem = space.problem();
     let mesh = &problem.mesh;

@@ -164,7 +164,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     }
 }
 
-/// What two constants of a body are in place of what the scene gives.
+/// Findings on two constants of a body, with the values that the scene gives.
 pub fn told(body: &Body, [young, poisson]: [f64; 2], [given_young, given_poisson]: [f64; 2]) -> Vec<Finding> {
     let mut findings = Vec::new();
     if !near(young, given_young) {

@@ -9,8 +9,8 @@ use crate::diagnose::words::number;
 const MEETING: f64 = 64.0;
 const SINGLE: f64 = f32::EPSILON as f64;
 
-/// What single precision leaves, where the displacements are kept in it and no node misses more. Rounding counts for displacements as large
-/// as those of a solution at most: beyond, it would hide any mistake.
+/// The finding of single precision, where the displacements are kept in it and no node misses more than it explains. Rounding counts for
+/// displacements as large as those of a solution at most: beyond, it would hide any mistake.
 pub fn finding(solution: &Solution<'_>) -> Option<Finding> {
     if solution.candidate.precision != SINGLE {
         return None;

@@ -9,7 +9,7 @@ use crate::problem::{Bed, OneSided};
 
 const DIRECTIONS: [&str; 2] = ["normal", "tangential"];
 
-/// What a bed is called in names and in sentences.
+/// Names of a bed in findings and in sentences.
 struct Called {
     /// `support/foot`, `bond/a|b` or `contact/a|b`.
     name: String,

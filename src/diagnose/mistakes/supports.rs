@@ -74,7 +74,7 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
     findings
 }
 
-/// Whether a support misses along axis `c` alone, and no force acts along it.
+/// True if a support misses along axis `c` alone, and no force acts along it.
 fn free_along(c: usize, off: &[[f64; 2]], force: &[[f64; 2]], enough: f64, no_force: f64) -> bool {
     let most = |values: &[[f64; 2]], c: usize| values.iter().fold(0.0_f64, |m, v| m.max(v[c].abs()));
     most(off, c) > enough && most(off, 1 - c) <= enough && most(force, c) <= no_force

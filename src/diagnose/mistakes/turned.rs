@@ -16,9 +16,9 @@ use crate::problem::Problem;
 /// How a model counts points and the hoop.
 #[derive(Clone, Copy)]
 struct Model {
-    /// Whether integrals carry the weight r; else its mean.
+    /// True if integrals carry the weight r; else its mean.
     weighted: bool,
-    /// Whether there is a hoop strain.
+    /// True if there is a hoop strain.
     hoop: bool,
 }
 
@@ -27,7 +27,7 @@ const RIGHT: Model = Model { weighted: true, hoop: true };
 /// Stress (rr, zz, tt, rz) of a strain, of the material of a body; `None` where it has no part.
 type Law<'a> = dyn Fn(usize, [f64; 4]) -> Option<[f64; 4]> + 'a;
 
-/// What makes columns of a body of revolution.
+/// Makes columns of a body of revolution.
 struct Columns<'a> {
     space: &'a Space<'a>,
     rule: Rule,

@@ -6,7 +6,7 @@ use crate::diagnose::{Finding, Trial};
 /// Shifts of the numbering that are tried, either way.
 const SHIFTS: usize = 3;
 
-/// What undoes a mistake at one node.
+/// Undoes a mistake at one node.
 type Undo = fn([f64; 2]) -> [f64; 2];
 
 /// Every way that is known, undone.
@@ -29,7 +29,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     trials
 }
 
-/// What is left of the squared residual with other displacements; nodes of triangles that touch `lost` do not count.
+/// Part of the squared residual that is left with other displacements; nodes of triangles that touch `lost` do not count.
 fn left(space: &Space<'_>, value: impl Fn(usize) -> [f64; 2], lost: &[usize]) -> f64 {
     let problem = space.problem();
     let bodies = &problem.scene.bodies;

@@ -21,7 +21,7 @@ const NO_FORCE: f64 = 1e-6;
 /// How well penetrations have to follow a constant for another gap.
 const CONSTANT: f64 = 1e-3;
 
-/// What the forces along each contact say where it penetrates, pulls or pushes while open.
+/// Findings from the forces along each contact where it penetrates, pulls or pushes while open.
 pub fn findings(solution: &Solution<'_>, energies: Energies) -> Vec<Finding> {
     let interfaces = 0..solution.problem.interfaces.len();
     let of = |index: usize| {
@@ -37,9 +37,9 @@ struct Along<'a> {
     interface: usize,
     name: &'a str,
     sites: Vec<usize>,
-    /// What counts as closed.
+    /// Distances up to this size count as closed.
     enough: f64,
-    /// What counts as a force.
+    /// Forces up to this size count as none.
     least: f64,
 }
 
@@ -154,7 +154,7 @@ impl<'a> Along<'a> {
         Some(Finding::new(name(found), Some(self.depth(widest)), Some(0.0), sentence))
     }
 
-    /// What a distance suggests that is no more than the square of the displacements over the length of the contact.
+    /// Remark on a distance no larger than the square of the displacements over the length of the contact; empty for any other.
     fn turned(&self, distance: f64) -> String {
         let ends = self.solution.sites.spans.iter().filter(|span| self.sites.binary_search(&span.ends[0]).is_ok());
         let length: f64 = ends.map(|span| span.length).sum();

@@ -16,7 +16,7 @@ pub(super) struct Penalty {
     stiffness: f64,
 }
 
-/// What a spring stands for.
+/// The extent that one spring stands for.
 #[derive(Clone, Copy)]
 enum Kind {
     Area,

@@ -65,7 +65,7 @@ struct Fit {
 }
 
 impl Along<'_> {
-    /// What is wrong with the friction of this contact; `None` where nothing is, or where there is none.
+    /// The mistake in the friction of this contact; `None` where there is no mistake, or no friction.
     pub(super) fn friction(&self) -> Option<Finding> {
         let rubbed = self.solution.rubbed(self.interface);
         let missed: f64 = rubbed.iter().map(|r| r.miss).sum();
@@ -195,7 +195,7 @@ impl Along<'_> {
         best.filter(|fit| fit.miss <= FOLLOWS)
     }
 
-    /// What forces miss of a law, relative to all of them: at the nodes, or integrated by a rule.
+    /// Misfit of forces and a law, relative to all forces: at the nodes, or integrated by a rule.
     fn missed(&self, rubbed: &[Rubbed], law: Smooth, parameter: f64, rule: Option<usize>) -> f64 {
         let solution = self.solution;
         let top = self.largest_bound();
@@ -253,7 +253,7 @@ impl Along<'_> {
         self.found("regularised", Some(fit.parameter), Some(0.0), sentence)
     }
 
-    /// What can be said where no law is recognised.
+    /// The finding where no law is recognised.
     fn unlike(&self, rubbed: &[Rubbed]) -> Finding {
         let worst = rubbed.iter().max_by(|a, b| a.miss.total_cmp(&b.miss));
         let place = worst.map_or(String::new(), |r| {

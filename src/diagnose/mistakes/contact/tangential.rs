@@ -32,7 +32,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
 }
 
 impl Along<'_> {
-    /// What forces along a contact are: those of glue where the sides do not slide, of friction where they do.
+    /// Classifies forces along a contact: as glue where the sides do not slide, as friction where they do.
     fn tangential(&self) -> Finding {
         let list = &self.solution.sites.list;
         let (mut tangent, mut pressed, mut slip, mut ratio) = (0.0, 0.0, 0.0_f64, 0.0_f64);
