@@ -70,7 +70,7 @@ impl Barrier {
         }
     }
 
-    /// What it adds to the diagonal of A.
+    /// Its term on the diagonal of A.
     pub fn stiffness(&self) -> f64 {
         match self {
             Barrier::Face { room, force, give, .. } => force / (room + give * force),

@@ -9,7 +9,7 @@ pub trait Quadratic {
     /// Number of unknowns.
     fn len(&self) -> usize;
 
-    /// Whether there are no unknowns.
+    /// True if there are no unknowns.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -37,13 +37,13 @@ pub trait Quadratic {
     /// Σ_k |A_ik x_k|: the size of the terms whose sum is (Ax)_i, and with it of the rounding in that sum.
     fn terms(&self, x: &[f64]) -> Vec<f64>;
 
-    /// Whether factors are exact, and cheap beside what else is done; otherwise they iterate, and algorithms that ask for one in
-    /// each step are no choice.
+    /// True if factors are exact, and cheap beside the other work; otherwise they iterate, and algorithms that need one in each step are
+    /// ruled out.
     fn is_direct(&self) -> bool {
         true
     }
 
-    /// Whether motions that A leaves free are to be expected in every state.
+    /// True if motions that A leaves free are to be expected in every state.
     fn is_loose(&self) -> bool {
         false
     }

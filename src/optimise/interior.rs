@@ -19,7 +19,7 @@ const HELD: f64 = 1e-3;
 const WORSE: f64 = 0.9;
 /// … and one towards this part of it is taken in its place.
 const CENTRED: f64 = 0.3;
-/// What is left of the equations, relative to data of size one, where the state may be read.
+/// Residual of the equations, relative to data of size one, at which the state may be read.
 const BALANCED: f64 = 1e-9;
 /// Products of room and force at which a point that comes no further still tells the state.
 const NEARLY: f64 = 1e-7;

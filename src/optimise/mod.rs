@@ -51,7 +51,7 @@ pub struct Solution {
     pub states: Vec<State>,
     /// Steps taken.
     pub steps: usize,
-    /// Whether values and forces ask for these states, up to rounding.
+    /// True if values and forces require these states, up to rounding.
     pub settled: bool,
 }
 

@@ -102,7 +102,7 @@ impl Program<'_> {
         (0..x.len()).map(next).collect()
     }
 
-    /// Whether nothing but what springs on loose motions hold is left of the load where unknowns move: a load on such a motion has no
+    /// True if, where unknowns move, the only load left over is the one that springs on loose motions hold: a load on such a motion has no
     /// minimum.
     fn is_balanced(&self, states: &[State], x: &[f64]) -> bool {
         let Program { form, load, laws } = *self;
