@@ -6,7 +6,7 @@ use crate::dual::DualSolution;
 use crate::element::Displacement;
 use crate::problem::{Bow, ContactPair, Problem};
 
-/// What is no index.
+/// Marks the absence of an index.
 const NONE: i32 = -1;
 
 fn index(i: usize) -> i32 {

@@ -27,7 +27,7 @@ const KINDS: [(&str, &str, &[&str]); 2] = [
     ("supports", "type", &["clamped", "roller", "spring"]),
 ];
 
-/// What the scene with this text has that the checker does not know; `None` where there is nothing.
+/// The first entry in the text of a scene that the checker does not know; `None` if it knows all.
 pub fn unknown(text: &str) -> Option<String> {
     let scene: Table = text.parse().ok()?;
     for (place, keys) in KNOWN {
@@ -49,7 +49,7 @@ pub fn unknown(text: &str) -> Option<String> {
     None
 }
 
-/// Whether a number is given by the two ends of a range, of which there is no proof.
+/// True if a number is given by the two ends of a range, for which there is no proof.
 fn is_range(place: &str, table: &Table, key: &str) -> bool {
     let Some(Value::Array(parts)) = table.get(key) else { return false };
     let nested = parts.iter().any(Value::is_array);

@@ -1,4 +1,4 @@
-//! What a reader needs to verify a bracket without this program: `proof.npz`, described in `docs/proof.md`.
+//! Data for verifying a bracket without this program: `proof.npz`, described in `docs/proof.md`.
 //!
 //! The file holds the scene as written, the meshes, and two fields in the numbers of this machine: the tractions of λ_h on every
 //! edge, and the displacement v. Neither is exactly admissible, and nothing here claims it. The checker (`checker/`), which shares
@@ -37,7 +37,7 @@ pub struct Fields<'a> {
     pub claim: [f64; 2],
     /// Where the upper one comes from.
     pub upper_from: &'a str,
-    /// What the intervals of quantities follow from.
+    /// The adjoint fields that intervals of quantities follow from.
     pub adjoints: &'a [Adjoint<'a>],
 }
 
@@ -77,7 +77,7 @@ pub enum ProofError {
     },
 }
 
-/// What the arrays belong to.
+/// Origin and claims of the arrays.
 #[derive(Serialize)]
 struct Manifest<'a> {
     format: u32,
@@ -91,7 +91,7 @@ struct Manifest<'a> {
     contacts: Vec<String>,
     claim: Claim<'a>,
     quantities: Vec<QuantityClaim<'a>>,
-    /// What this program says of its own data: where it represents them by others.
+    /// Remarks on the data, where this program represents them by others.
     notes: Vec<&'a str>,
     mesh_files: Vec<MeshFile>,
 }

@@ -15,7 +15,7 @@ pub(super) struct Archive {
     digest: Sha256,
 }
 
-/// What an element of an array is.
+/// An element type of arrays.
 pub(super) trait Element: Copy {
     /// Its name in the header of a `.npy` file.
     const NAME: &'static str;
