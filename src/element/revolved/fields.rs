@@ -1,6 +1,6 @@
 //! The space of the element on one triangle, before energies choose its modes.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView};
 
 use super::householder::range_and_rest;
 use super::modes::{Ring, dot};
@@ -73,14 +73,15 @@ pub(super) struct Fields {
     pub columns: DMatrix<f64>,
     /// Number of those without traction.
     pub free: usize,
+    /// The conditions that they meet.
+    pub inside: Split,
 }
 
 impl Fields {
     pub fn new(ring: &Ring, raw: &Raw) -> Self {
         let dimension = ring.dimension();
-        let kept = raw.nodal.ncols() - dimension;
-        let all = range_and_rest(Conditions::inside(ring).of(&raw.nodal).transpose(), kept);
-        let space = all.columns(kept, dimension);
+        let inside = Split::new(Conditions::inside(ring), raw, dimension);
+        let space = inside.space();
         // One resultant, that along the axis, is none.
         let met = ring.met() - 1;
         let tractions = Conditions::on_sides(ring).of(&raw.nodal);
@@ -93,7 +94,7 @@ impl Fields {
         columns.column_mut(0).copy_from(&pressure);
         columns.columns_mut(1, free).copy_from(&ordered.columns(met, free));
         columns.columns_mut(1 + free, met - 1).copy_from(&(ordered.columns(0, met) * others.columns(1, met - 1)));
-        Fields { columns, free }
+        Fields { columns, free, inside }
     }
 }
 
@@ -185,6 +186,46 @@ fn traction_rows(ring: &Ring, [dr, dz]: [f64; 2]) -> [[(usize, f64); 2]; 2] {
     [[(0, across), (2, -along)], [(2, across / flatness), (1, -along / flatness)]]
 }
 
+/// The raw fields, split by conditions on them.
+pub(super) struct Split {
+    conditions: Conditions,
+    /// By how much the raw fields miss them.
+    missed: DMatrix<f64>,
+    /// An orthogonal matrix: first the fields that miss them, then those that meet them.
+    all: DMatrix<f64>,
+    rank: usize,
+}
+
+impl Split {
+    /// By conditions that fields of this dimension meet.
+    fn new(conditions: Conditions, raw: &Raw, dimension: usize) -> Self {
+        let missed = conditions.of(&raw.nodal);
+        let rank = raw.nodal.ncols() - dimension;
+        Split { all: range_and_rest(missed.transpose(), rank), conditions, missed, rank }
+    }
+
+    /// Splits by the conditions of fields without traction.
+    pub fn unloaded(ring: &Ring, raw: &Raw) -> Self {
+        let Conditions(mut rows) = Conditions::inside(ring);
+        rows.extend(Conditions::on_sides(ring).0);
+        Self::new(Conditions(rows), raw, ring.dimension() - (ring.met() - 1))
+    }
+
+    /// The fields that meet the conditions.
+    fn space(&self) -> DMatrixView<'_, f64> {
+        self.all.columns(self.rank, self.all.ncols() - self.rank)
+    }
+
+    /// The repair of fields that should meet the conditions.
+    pub fn repair(self, raw: &Raw) -> Repair {
+        let range = self.all.columns(0, self.rank);
+        let (q, r) = (self.missed * range).qr().unpack();
+        let least = r.solve_upper_triangular(&q.transpose());
+        let least = least.unwrap_or_else(|| DMatrix::zeros(self.rank, self.conditions.0.len()));
+        Repair { change: &raw.nodal * (range * least), conditions: self.conditions }
+    }
+}
+
 /// Makes nodal values meet conditions to the rounding of the values themselves.
 ///
 /// Σ_zz = −∂_r χ asks for a χ as large as the triangle is long, and Σ_rz = ∂_z χ divides its rounding by the height: in flat triangles jumps of
@@ -197,30 +238,6 @@ pub(super) struct Repair {
 }
 
 impl Repair {
-    /// For fields of the element.
-    pub fn inside(ring: &Ring, raw: &Raw) -> Self {
-        Self::new(Conditions::inside(ring), raw, ring.dimension())
-    }
-
-    /// For fields without traction.
-    pub fn unloaded(ring: &Ring, raw: &Raw) -> Self {
-        let Conditions(mut rows) = Conditions::inside(ring);
-        rows.extend(Conditions::on_sides(ring).0);
-        Self::new(Conditions(rows), raw, ring.dimension() - (ring.met() - 1))
-    }
-
-    /// For the fields that meet `conditions`, a space of this dimension.
-    fn new(conditions: Conditions, raw: &Raw, dimension: usize) -> Self {
-        let missed = conditions.of(&raw.nodal);
-        let rank = raw.nodal.ncols() - dimension;
-        let all = range_and_rest(missed.transpose(), rank);
-        let range = all.columns(0, rank);
-        let (q, r) = (missed * range).qr().unpack();
-        let least =
-            r.solve_upper_triangular(&q.transpose()).unwrap_or_else(|| DMatrix::zeros(rank, conditions.0.len()));
-        Repair { change: &raw.nodal * (range * least), conditions }
-    }
-
     /// Changes the columns of `nodal`.
     pub fn apply(&self, nodal: &mut DMatrix<f64>) {
         // The second time takes away what the first leaves of large jumps.

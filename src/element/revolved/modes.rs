@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::fields::{Fields, Raw, Repair};
+use super::fields::{Fields, Raw, Split};
 use super::law::Law;
 use super::rule::rule;
 use super::stress::to_bernstein;
@@ -81,7 +81,7 @@ impl Ring {
             x[(last, k)] = unit;
             backward(&triangle, x.column_mut(k).as_mut_slice(), last + 1);
         }
-        let repair = Repair::inside(self, &raw);
+        let repair = fields.inside.repair(&raw);
         let mut nodal = &raw.nodal * (&fields.columns * x);
         repair.apply(&mut nodal);
         out.traction.copy_from_slice(self.tractions(&nodal).as_slice());
@@ -108,7 +108,7 @@ impl Ring {
         let raw = Raw::new(self);
         let fields = Fields::new(self, &raw);
         let triangle = self.triangle(law, &raw, &fields.columns, None);
-        let (count, repair) = (fields.columns.ncols(), Repair::unloaded(self, &raw));
+        let (count, repair) = (fields.columns.ncols(), Split::unloaded(self, &raw).repair(&raw));
         let field = |k: usize| {
             let mut x = vec![0.0; count];
             x[k] = law.unit().sqrt();
