@@ -130,7 +130,7 @@ impl ModeTable {
     /// Nodal stresses of every mode of triangle `t`.
     pub fn mode_stresses(&self, problem: &Problem, t: usize) -> Vec<Vec<[f64; 3]>> {
         let corners = problem.mesh.corners(self.classes[self.class[t] as usize].triangle);
-        self.elements.of(t).mode_stresses(corners, &self.of(t))
+        problem.section().mode_stresses(self.elements.of(t), corners, &self.of(t))
     }
 
     /// Nodal stresses of an orthonormal basis of the fields without traction on triangle `t`.

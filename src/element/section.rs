@@ -12,7 +12,7 @@ use super::polynomial::triangle;
 use super::revolved::{Held, Ring, Tensor, Weighted, rule};
 use super::{
     Displacement, EquilibriumElement, Layout, Material, Modes, ModesMut, Strains, StressField, displacement,
-    lattice_len,
+    lattice_len, one_by_one,
 };
 use crate::load::BodyForce;
 
@@ -128,6 +128,21 @@ impl Section {
         match self {
             Section::Slice => element.unloaded(corners, material),
             Section::Revolved { axis } => Ring::new(element.degree(), axis, corners).unloaded(&material.revolved()),
+        }
+    }
+
+    /// Nodal stresses of every mode.
+    pub fn mode_stresses(
+        self,
+        element: &dyn EquilibriumElement,
+        corners: Corners,
+        modes: &Modes<'_>,
+    ) -> Vec<Vec<[f64; 3]>> {
+        match self {
+            Section::Slice => element.mode_stresses(corners, modes),
+            Section::Revolved { .. } => {
+                one_by_one(modes.parameters(), element.degree(), |unit, out| Ring::stresses(modes, unit, 0.0, out))
+            }
         }
     }
 

@@ -279,6 +279,26 @@ fn intervals_of_all_degrees_hold_one_value() {
     }
 }
 
+/// A hub pressed onto a shaft is pushed onto its foot: the force there is that of statics, and the mean of σ_zz below the load too.
+#[test]
+fn what_statics_says_along_the_axis_is_exact() {
+    let bodies = rectangle("shaft", [0.0, 1.0], [0.0, 0.5], 0.3) + &rectangle("hub", [1.0, 2.0], [0.0, 0.5], 0.2);
+    let text = head("axisymmetric", 0.25)
+        + &bodies
+        + &rollers("shaft_foot")
+        + &rollers("hub_foot")
+        + &pressure("hub_top", 0.02)
+        + "[[contacts]]\nbetween = [\"shaft_out\", \"hub_in\"]\ngap = -0.01\n"
+        + &quantity("foot", "force = \"hub_foot\"\ndirection = [0.0, 1.0]")
+        + &quantity("along", "stress = \"hub\"\ncomponent = \"zz\"");
+    let exact = [0.02 * 0.5 * TAU * 3.0, -0.02];
+    for degree in [1, 2, 3] {
+        for ([lower, upper], exact) in intervals(&text, degree).into_iter().zip(exact) {
+            assert!((lower - exact).abs() < 1e-7 && (upper - exact).abs() < 1e-7, "{degree}: {lower} {exact} {upper}");
+        }
+    }
+}
+
 #[test]
 fn what_moves_along_the_axis_is_no_equilibrium() {
     let body = rectangle("ring", [1.0, 2.0], [0.0, 1.0], 0.3);

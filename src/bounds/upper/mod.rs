@@ -112,7 +112,7 @@ fn relaxed(
     let sliding = Sliding::of(problem, stress, moments);
     made.model.rub(problem, nodes, &sliding);
     let mut field = NodalValues::zeros(nodes.clone());
-    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments, true));
+    field.vertices_mut().copy_from_slice(&fit::vertex_values(problem, stress, moments, fit::Added::Scene));
     share.refresh(&mut field.values);
     energy::beds::draw(problem, stress, &mut field);
     let vertex = field.vertices_mut();

@@ -73,7 +73,7 @@ impl Search<'_, '_> {
     pub fn begin(&self, neutral: Response) -> Begun {
         let Known { problem, nearest, .. } = self.known;
         let sigma = self.stress(&neutral.stress);
-        let nodes = nearest.start(&sigma, &neutral.moments);
+        let nodes = nearest.start(&sigma, &neutral.moments, &self.functional.load.turned);
         let springs = adjoint_of(problem, self.functional, &neutral.stress);
         let of_springs = square_of(problem, &springs);
         let balanced = square(problem, &neutral.stress) + of_springs;

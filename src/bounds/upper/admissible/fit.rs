@@ -16,27 +16,36 @@ use crate::element::displacement::MOST;
 use crate::element::geometry::{from_centroid, gradients, sub_corners};
 use crate::element::polynomial::quadrature::{segment_rule, triangle_rule};
 use crate::element::polynomial::triangle;
-use crate::element::revolved::Held;
+use crate::element::revolved::{Held, Tensor};
 use crate::element::{Material, Samples, SideValues, StressField, weighed};
 use crate::load::BodyForce;
 use crate::problem::Problem;
 
+/// Strains beside that of a stress.
+#[derive(Debug, Clone, Copy)]
+pub enum Added<'a> {
+    /// The initial strains of the scene, and what its forces add to the hoop.
+    Scene,
+    /// Constant ones (rr, zz, tt, rz) of triangles of a body of revolution, in their order.
+    Constant(&'a [(usize, Tensor)]),
+}
+
 /// Averages of the local fits; where triangles of several degrees meet, of those of the highest.
 ///
-/// `moments` are those of the displacement of every edge, `stress` is λ_h or what stands in its place; the strain is aλ_h, with the initial
-/// strains and forces of the scene or without.
+/// `moments` are those of the displacement of every edge, `stress` is λ_h or what stands in its place; the strain is aλ_h with what is
+/// `added`.
 pub fn vertex_values(
     problem: &Problem,
     stress: &StressField,
     moments: &SideValues<[f64; 2]>,
-    initial: bool,
+    added: Added<'_>,
 ) -> Vec<[f64; 2]> {
     let mesh = &problem.mesh;
     let materials = problem.materials();
     let local: Vec<[[f64; 2]; 3]> = (0..mesh.triangles.len())
         .into_par_iter()
         .with_min_len(256)
-        .map(|t| corner_values(problem, stress, moments, (&materials[mesh.body[t]], initial), t))
+        .map(|t| corner_values(problem, stress, moments, (&materials[mesh.body[t]], added), t))
         .collect();
     let degree = |t: usize| stress.degree(t);
     let mut highest = vec![0; mesh.points.len()];
@@ -60,7 +69,7 @@ fn corner_values(
     problem: &Problem,
     stress: &StressField,
     moments: &SideValues<[f64; 2]>,
-    (material, with_initial): (&Material, bool),
+    (material, added): (&Material, Added<'_>),
     t: usize,
 ) -> [[f64; 2]; 3] {
     let mesh = &problem.mesh;
@@ -69,6 +78,7 @@ fn corner_values(
     let reference = Reference::of(stress.degree(t));
     let shapes = Samples::of_stress(stress.degree(t), stress.degree(t));
     let initial = material.initial();
+    let with_initial = matches!(added, Added::Scene);
     let in_plane = |sub: usize, q: usize, l: [f64; 3]| {
         let own = material.strain(stress.sample(t, sub, shapes, q));
         if initial.is_none() || !with_initial {
@@ -84,9 +94,13 @@ fn corner_values(
             let force = if with_initial { problem.body_force(t) } else { &BodyForce::NONE };
             let of = revolved.plane_strain_of(stress, t, corners, material, force);
             let held = Held::on(material, corners).filter(|_| with_initial);
+            let constant = match added {
+                Added::Constant(strains) => strains.binary_search_by_key(&t, |(t, _)| *t).ok().map(|at| strains[at].1),
+                Added::Scene => None,
+            };
             reference.strain(|sub, _, l| {
                 let own = of(sub, l);
-                let Some([rr, zz, _, rz]) = held.map(|held| held.at(sub, l)) else { return own };
+                let Some([rr, zz, _, rz]) = held.map(|held| held.at(sub, l)).or(constant) else { return own };
                 [own[0] + rr, own[1] + zz, own[2] + rz]
             })
         }

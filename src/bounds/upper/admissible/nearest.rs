@@ -5,6 +5,7 @@
 
 use std::cell::RefCell;
 
+use super::fit::Added;
 use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, rows};
 use super::{edges, fit};
@@ -14,6 +15,7 @@ use crate::bounds::upper::prepared::{Made, Prepared};
 use crate::bounds::upper::relaxation::patches::Patches;
 use crate::bounds::upper::relaxation::share::Whole;
 use crate::bounds::upper::{Holds, NoUpperBound, Pull, Sliding, Until, holds_at, relaxation, restricted};
+use crate::element::revolved::Tensor;
 use crate::element::{Displacement, SideValues, StressField};
 use crate::problem::Problem;
 
@@ -47,11 +49,17 @@ impl<'a> Nearest<'a> {
         self.rows.iter().map(Vec::len)
     }
 
-    /// The displacement that has edge moments `moments` and the strain of `stress` nearly, in values at nodes: what
+    /// The displacement that has edge moments `moments` and nearly the strain of `stress` with what is `added`, in values at nodes: what
     /// [`Self::to`] begins with.
-    pub fn start(&self, stress: &StressField, moments: &SideValues<[f64; 2]>) -> NodalValues {
+    pub fn start(
+        &self,
+        stress: &StressField,
+        moments: &SideValues<[f64; 2]>,
+        added: &[(usize, Tensor)],
+    ) -> NodalValues {
+        let values = fit::vertex_values(self.problem, stress, moments, Added::Constant(added));
         let mut field = NodalValues::zeros(self.nodes.clone());
-        field.vertices_mut().copy_from_slice(&fit::vertex_values(self.problem, stress, moments, false));
+        field.vertices_mut().copy_from_slice(&values);
         for (value, hold) in field.vertices_mut().iter_mut().zip(&self.holds.vertices) {
             *value = hold.impose(*value);
         }
