@@ -151,7 +151,7 @@ impl Session {
 pub fn lines(report: &Report) -> Vec<String> {
     let mut lines = vec![report.verdict.clone()];
     for quantity in &report.quantities {
-        lines.push(format!("  {}", quantity.in_words(report.is_guaranteed())));
+        lines.push(format!("  {}", quantity.in_words(report.firmness())));
     }
     for cause in &report.causes {
         // The verdict begins with the first.

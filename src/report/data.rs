@@ -80,6 +80,15 @@ impl Report {
     pub fn is_guaranteed(&self) -> bool {
         !self.notes.iter().any(|note| note.weakens_guarantee)
     }
+
+    /// How firmly intervals hold, before "within".
+    pub fn firmness(&self) -> &'static str {
+        match (self.is_guaranteed(), &self.coulomb) {
+            (false, _) => "indicated",
+            (true, Some(_)) => "for the friction bound that was found guaranteed",
+            (true, None) => "guaranteed",
+        }
+    }
 }
 
 /// The verdict.

@@ -124,13 +124,12 @@ impl QuantitySummary {
         self.ends().join(" … ")
     }
 
-    /// One sentence; `guaranteed` where the interval holds for the scene as written.
-    pub fn in_words(&self, guaranteed: bool) -> String {
+    /// One sentence, with the [firmness](Report::firmness) of the interval.
+    pub fn in_words(&self, firmness: &str) -> String {
         let value = if self.value.is_finite() { significant(self.value, self.digits()) } else { "unknown".to_string() };
         let how = if self.exact_by_statics { ", exact by statics" } else { "" };
         let reason = self.reason.as_ref().map_or(String::new(), |reason| format!(" ({reason})"));
-        let word = if guaranteed { "guaranteed" } else { "indicated" };
-        format!("{} ({}): {value}, {word} within {}{how}{reason}", self.name, self.kind, self.interval())
+        format!("{} ({}): {value}, {firmness} within {}{how}{reason}", self.name, self.kind, self.interval())
     }
 
     /// The values that are held against the interval: those of the displacement models, then those that came without a
@@ -183,10 +182,16 @@ mod tests {
     #[test]
     fn a_sentence_says_what_is_known_and_why_not_more() {
         let mut quantities = Sample::new(1, Verdict::Agree).dossier().report.quantities;
-        assert_eq!(quantities[0].in_words(true), "tip <a&b> (displacement): 0.801, guaranteed within 0.79 … 0.81");
-        assert_eq!(quantities[1].in_words(true), "seat (force): 0.25, guaranteed within 0.2 … ∞ (nothing holds <it>)");
-        assert!(quantities[2].in_words(true).ends_with("0.5 … 0.5, exact by statics"));
-        assert!(quantities[0].in_words(false).contains("indicated within"));
+        assert_eq!(
+            quantities[0].in_words("guaranteed"),
+            "tip <a&b> (displacement): 0.801, guaranteed within 0.79 … 0.81"
+        );
+        assert_eq!(
+            quantities[1].in_words("guaranteed"),
+            "seat (force): 0.25, guaranteed within 0.2 … ∞ (nothing holds <it>)"
+        );
+        assert!(quantities[2].in_words("guaranteed").ends_with("0.5 … 0.5, exact by statics"));
+        assert!(quantities[0].in_words("indicated").contains("indicated within"));
         quantities[0].lower = 0.790_000_9;
         quantities[0].upper = 0.810_000_1;
         assert_eq!(quantities[0].interval(), "0.79 … 0.81001", "rounded away from what it holds");

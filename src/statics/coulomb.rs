@@ -34,6 +34,8 @@ struct Force {
     row: DVector<f64>,
     law: Law,
     interface: usize,
+    /// False for a radial pressure on a body of revolution, which moves no piece: hoop stresses say how large it is.
+    pushes: bool,
 }
 
 /// True if contact forces within their cones balance the loads on every piece; also where this was not examined.
@@ -68,7 +70,7 @@ fn wedged_in(problem: &Problem, group: &Group) -> Option<Wedged> {
         let coefficient = |interface| if friction { problem.coefficient(interface).unwrap_or(0.0) } else { 0.0 };
         let mut forces = forces(problem, group, &supports, coefficient);
         // Friction with a given bound takes a part alone.
-        forces.retain(|force| force.law == PUSHES && force.row.norm() > RANK);
+        forces.retain(|force| force.law == PUSHES && force.pushes && force.row.norm() > RANK);
         balanced_without_load(&mut forces)
     };
     if with(false).is_some() {
@@ -109,13 +111,14 @@ fn forces(problem: &Problem, group: &Group, supports: &Span, coefficient: impl F
         for end in run.ends {
             let normal = group.dense(&group.across(run, end));
             let slip = group.dense(&group.slip(run, end)) * mu;
-            let rows = if mu > 0.0 { vec![&normal + &slip, &normal - &slip] } else { vec![normal] };
-            let push = |row| Force { row: supports.residual(&row), law: PUSHES, interface: run.interface };
+            let rows = if mu > 0.0 { vec![&normal + &slip, &normal - &slip] } else { vec![normal.clone()] };
+            let pushes = !problem.section().is_revolved() || supports.residual(&normal).norm() > RANK;
+            let push = |row| Force { row: supports.residual(&row), law: PUSHES, interface: run.interface, pushes };
             all.extend(rows.into_iter().map(push));
         }
         if run.friction > 0.0 && problem.coefficient(run.interface).is_none() {
             let row = supports.residual(&group.dense(&group.slip(run, run.ends[0])));
-            all.push(Force { row, law: held_to(run.friction), interface: run.interface });
+            all.push(Force { row, law: held_to(run.friction), interface: run.interface, pushes: false });
         }
     }
     all

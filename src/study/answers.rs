@@ -45,6 +45,7 @@ impl Answer {
 /// # Errors
 /// A sentence that names the quantity.
 pub fn refuse_quantities(problem: &Problem) -> Result<(), String> {
+    let problem = &problem.where_friction_acts();
     for quantity in &problem.scene.quantities {
         match Form::new(problem, quantity) {
             Ok(form) if problem.has_friction() => {

@@ -37,6 +37,14 @@ const ROUNDED_MEAN: f64 = 1e-12;
 const NO_SLOPE: &str = "with friction, elastic contact or polynomial tractions only mean displacements of free and loaded boundaries and of \
                         bodies, mean stresses, and forces of contacts and of supports without springs have an interval, and this is none of them";
 
+/// The same of a body of revolution.
+const NO_SLOPE_REVOLVED: &str = "on bodies of revolution with friction or elastic contact only mean displacements of free and loaded boundaries \
+                                 and of bodies and normal forces of contacts have an interval, and this is none of them";
+
+fn no_slope(problem: &Problem) -> &'static str {
+    if problem.section().is_revolved() { NO_SLOPE_REVOLVED } else { NO_SLOPE }
+}
+
 /// Why there is none all the same.
 const UNSOLVED: &str = "the problem with other data, from whose energy the interval would come, could not be bounded";
 
@@ -45,13 +53,13 @@ const UNSOLVED: &str = "the problem with other data, from whose energy the inter
 /// # Errors
 /// A sentence on the quantities that have one.
 pub fn refuse(problem: &Problem, form: &Form) -> Result<(), &'static str> {
-    form.linear().and_then(|functional| Change::of(problem, functional)).map(|_| ()).ok_or(NO_SLOPE)
+    form.linear().and_then(|functional| Change::of(problem, functional)).map(|_| ()).ok_or_else(|| no_slope(problem))
 }
 
 /// The interval of a quantity of a problem that was solved.
 pub fn interval(certified: &Certified, form: &Form, options: &Options) -> Interval {
     let found = form.linear().and_then(|functional| Some((functional, Change::of(&certified.problem, functional)?)));
-    let Some((functional, change)) = found else { return Interval::unknown(NO_SLOPE) };
+    let Some((functional, change)) = found else { return Interval::unknown(no_slope(&certified.problem)) };
     let stress = &certified.dual.stress;
     let degrees = (0..stress.len()).map(|t| stress.degree(t) as u8).collect();
     let options = Options { elements: Elements::Blocks(degrees), ..options.clone() };
@@ -76,13 +84,13 @@ impl Change {
         let weighted = load.weights.iter().any(|weights| !weights.is_empty());
         let linear = load.weights.iter().all(|weights| matches!(weights.len(), 0 | 2));
         let loaded = !load.tractions.is_empty() || load.force.iter().any(|force| !force.is_none());
-        // In a body of revolution gaps alone are changed.
-        let of_gaps = || weighted && !loaded && load.strains.is_empty() && functional.region.is_none();
+        // In a body of revolution no initial strains are changed: they have none around the axis.
+        let without_strains = load.strains.is_empty() && functional.region.is_none();
         let plain = functional.local.is_none()
             && load.turned.is_empty()
             && load.shaped.is_empty()
             && load.edges.is_empty()
-            && (!problem.section().is_revolved() || of_gaps());
+            && (!problem.section().is_revolved() || without_strains);
         let free = |(e, _): &(usize, _)| matches!(problem.conditions[*e], Condition::Traction(_));
         match (loaded, weighted || !load.strains.is_empty()) {
             _ if !plain => None,

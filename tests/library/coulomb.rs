@@ -7,7 +7,7 @@ use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::statics::{friction_can_balance, wedged};
-use hypercircle::study::{Certified, Coulomb, End, StudyError, certify_divided, solve_coulomb};
+use hypercircle::study::{Certified, Coulomb, End, StudyError, answers, certify_divided, solve_coulomb};
 
 fn problem(text: &str) -> Problem {
     let scene = Scene::parse(text, "scene.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -24,14 +24,15 @@ fn solved(text: &str, degree: usize) -> (Certified, Coulomb) {
     tried(&problem(text), degree).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-/// ∫ p ds of each contact, and ∫ τ̄ ds of the bound that was used.
+/// ∫ p ds of each contact, and ∫ τ̄ ds of the bound that was used; of a body of revolution over the full turn.
 fn forces(certified: &Certified) -> Vec<[f64; 2]> {
     let all = certified.problem.interfaces.iter().zip(&certified.dual.contact_traction);
     all.map(|(interface, tractions)| {
         let of = |(k, pair): (usize, &hypercircle::problem::ContactPair)| {
             let t = tractions.of(k);
-            let bound = pair.friction.map_or(0.0, |friction| 0.5 * (friction.bound[0] + friction.bound[1]));
-            [-pair.length * t.iter().sum::<f64>() / t.len() as f64, pair.length * bound]
+            let bound = pair.friction.map_or_else(|| vec![0.0], |friction| friction.weighted());
+            let size = certified.problem.scene.thickness * pair.length;
+            [-size * t.iter().sum::<f64>() / t.len() as f64, size * bound.iter().sum::<f64>() / bound.len() as f64]
         };
         interface.pairs.iter().enumerate().map(of).fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
     })
@@ -65,6 +66,87 @@ fn a_wedge_in_a_groove_presses_as_statics_says() {
         }
         assert_eq!(coulomb.wedged.len(), usize::from(mu > 20.0_f64.to_radians().tan()));
         assert!(coulomb.distances.iter().flatten().all(|distance| distance.relative < 1e-6));
+    }
+}
+
+/// A wedge turned about an axis, in a groove: along the axis its faces carry (N' + N'') (sin α + μ cos α) = P. A cone, which has one face, has
+/// its axis inside.
+#[test]
+fn wedges_and_cones_of_revolution_press_as_statics_says() {
+    let (sin, cos) = 20.0_f64.to_radians().sin_cos();
+    let (mu, down, half) = (0.2, 0.01, 0.3 + sin / cos);
+    for (middle, degree) in [(1.0, 1), (1.0, 2), (40.0, 2), (0.0, 1), (0.0, 3)] {
+        let cone = middle == 0.0;
+        let [foot, top] = if cone { [0.0; 2] } else { [middle - 0.3, middle - half] };
+        let friction = |on: &str| format!("[[contacts]]\non = \"{on}\"\nfriction = {{ coefficient = {mu:?} }}");
+        let outline = [[foot, 0.0], [middle + 0.3, 0.0], [middle + half, 1.0], [top, 1.0]];
+        let left = if cone { "" } else { "left" };
+        let mut toml = Toml::default().turned().size(0.3).outline("wedge", &outline, &["", "right", "load", left]);
+        toml = toml.traction("load", [0.0, -down]).table(&friction("right"));
+        let text = if cone { toml.text() } else { toml.table(&friction("left")).text() };
+        let (certified, coulomb) = solved(&text, degree);
+        let load = down * 0.5 * std::f64::consts::TAU * ((middle + half).powi(2) - top * top);
+        let faces = forces(&certified);
+        let pressure: f64 = faces.iter().map(|face| face[0]).sum();
+        let normal = load / (sin + mu * cos);
+        assert!((pressure - normal).abs() < 2e-2 * normal, "{middle} {degree}: {pressure} {normal}");
+        for [pressure, bound] in faces {
+            assert!((bound - mu * pressure).abs() < 1e-6 * normal, "{middle} {degree}: {bound} {}", mu * pressure);
+        }
+        assert!(
+            coulomb.wedged.is_empty() && coulomb.distances.iter().flatten().all(|d| d.relative < 0.2),
+            "{coulomb:?}"
+        );
+        let wedges = |mu: f64| wedged(&problem(&text.replace("coefficient = 0.2", &format!("coefficient = {mu:?}"))));
+        assert_eq!([0.363, 0.365].map(|mu| wedges(mu).len()), [0, 1], "{middle}");
+    }
+}
+
+/// A hub shrunk onto a shaft holds a push with no more than the forces of its friction. Nothing wedges it: its hoop stress says how much it
+/// presses.
+#[test]
+fn a_hub_holds_what_its_pressure_carries() {
+    let ring = |[a, b]: [f64; 2]| [[a, 0.0], [b, 0.0], [b, 1.0], [a, 1.0]];
+    let pushed = |load: f64| {
+        Toml::default()
+            .turned()
+            .size(0.25)
+            .outline("shaft", &ring([0.0, 1.0]), &["foot", "seat", "", ""])
+            .outline("hub", &ring([1.0, 2.0]), &["push", "", "", "bore"])
+            .clamp("foot")
+            .traction("push", [0.0, load])
+            .table("[[contacts]]\nbetween = [\"seat\", \"bore\"]\ngap = -0.01\nfriction = { coefficient = 0.2 }")
+            .text()
+    };
+    let (certified, coulomb) = solved(&pushed(5e-5), 2);
+    let [[pressure, bound]] = forces(&certified)[..] else { panic!("one contact") };
+    let push = |load: f64| load * 1.5 * std::f64::consts::TAU;
+    assert!(bound > push(5e-5) && coulomb.wedged.is_empty() && coulomb.lowest.is_none(), "{pressure} {bound}");
+    // Lamé: δ/b · 3/8 of E, but for the ends.
+    assert!((pressure / (0.00375 * std::f64::consts::TAU) - 1.0).abs() < 0.15, "{pressure}");
+    let most = bound / (1.5 * std::f64::consts::TAU);
+    solved(&pushed(0.8 * most), 2);
+    let slides = tried(&problem(&pushed(1.3 * most)), 2).expect_err("no equilibrium").to_string();
+    assert!(slides.contains("slides along its contact"), "{slides}");
+}
+
+/// Quantities have intervals for the bound that was found: the forces of a block that slides are those of statics.
+#[test]
+fn quantities_are_for_the_bound_that_was_found() {
+    let asked = |name: &str, of: &str| format!("[[quantities]]\nname = \"{name}\"\n{of}\n");
+    let text = pushed(0.3, 0.03, 0.5)
+        + &asked("normal", "force = \"foot\"\nwindow = [0.1, 0.5, 1.5, 1.9]")
+        + &asked("rubs", "force = \"foot\"\ncomponent = \"tangential\"\nwindow = [0.1, 0.5, 1.5, 1.9]")
+        + &asked("moved", "displacement = \"high\"\ndirection = [1.0, 0.0]");
+    hypercircle::study::refuse_quantities(&problem(&text)).expect("quantities that have an interval");
+    let (certified, _) = solved(&text, 2);
+    let fine = solved(&text.replace("size = 0.5", "size = 0.2"), 3).0;
+    let of = |certified: &Certified| answers(certified, &Options::default(), |_| true);
+    for (coarse, fine) in of(&certified).iter().zip(&of(&fine)) {
+        let ([a, b], [c, d]) = (coarse.interval.ends, fine.interval.ends);
+        assert!(b.is_finite() && a.is_finite() && d - c < b - a, "{}: {a} {b} {c} {d}", coarse.name);
+        // The bounds differ by what a linear function misses of the pressure.
+        assert!(a <= d && c <= b, "{}: {a} {b} {c} {d}", coarse.name);
     }
 }
 

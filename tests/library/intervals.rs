@@ -1,6 +1,6 @@
 //! Intervals of quantities hold the exact values: of known solutions, of far finer meshes, of each other.
 //!
-//! Random scenes by seed; set `HYPERCIRCLE_SCENES` for another number than four.
+//! Random scenes by seed; set `HYPERCIRCLE_SCENES` for another number than three.
 
 use crate::support::Blocks;
 use crate::support::asked::{ask, everything, of_degree, quantity};
@@ -171,7 +171,7 @@ fn exact_fields_give_intervals_of_rounding() {
 
 #[test]
 fn intervals_of_coarse_and_fine_meshes_never_contradict_each_other() {
-    let wanted: usize = std::env::var("HYPERCIRCLE_SCENES").ok().map_or(4, |n| n.parse().expect("a number of scenes"));
+    let wanted: usize = std::env::var("HYPERCIRCLE_SCENES").ok().map_or(3, |n| n.parse().expect("a number of scenes"));
     let (mut met, mut infinite, mut seed) = (0, 0, 7000);
     let mut narrowed = Vec::new();
     while met < wanted {

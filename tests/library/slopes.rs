@@ -204,3 +204,33 @@ fn what_friction_leaves_without_an_interval_is_refused() {
     let error = Scene::parse(&text, "scene.toml".as_ref()).expect_err("no friction").to_string();
     assert!(error.contains("component") && error.contains("without friction"), "{error}");
 }
+
+/// A bound that is all but none leaves the values of frictionless contact in bodies of revolution too, and their intervals are of another make.
+#[test]
+fn displacements_of_bodies_of_revolution_have_intervals_beside_friction() {
+    let ask = |friction: &str| {
+        let ring = |[a, b]: [f64; 2]| [[a, 0.0], [b, 0.0], [b, 1.0], [a, 1.0]];
+        let moved = |name: &str, of: &str, along: [f64; 2]| {
+            format!("[[quantities]]\nname = \"{name}\"\ndisplacement = \"{of}\"\ndirection = {along:?}")
+        };
+        let toml = Toml::default()
+            .turned()
+            .size(0.5)
+            .outline("shaft", &ring([0.0, 1.0]), &["foot", "seat", "", ""])
+            .outline("hub", &ring([1.0, 2.0]), &["ground", "out", "top", "bore"])
+            .clamp("foot")
+            .roller("ground")
+            .traction("top", [0.0, -0.01])
+            .table(&format!("[[contacts]]\nbetween = [\"seat\", \"bore\"]\ngap = -0.01\n{friction}"))
+            .table(&moved("top", "top", [0.0, 1.0]))
+            .table(&moved("out", "out", [1.0, 0.0]))
+            .table(&moved("sunk", "hub", [0.0, 1.0]))
+            .table(&moved("grown", "hub", [1.0, 0.0]));
+        solved(&toml.text(), 0, 3)
+    };
+    for (rubbed, free) in ask("friction = { bound = 1e-12 }").iter().zip(&ask("")) {
+        let ([low, high], [least, most]) = (rubbed.interval.ends, free.interval.ends);
+        assert!(low <= least && most <= high, "{}: {low} {high}, {least} {most}", rubbed.name);
+        assert!(high - low < 0.3 * high.abs().max(low.abs()), "{}: {low} {high}", rubbed.name);
+    }
+}

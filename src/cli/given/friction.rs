@@ -2,7 +2,7 @@
 
 use crate::cli::{CliError, Exit};
 use crate::problem::{follows_coulomb, rubs};
-use crate::scene::{Kinematics, Scene};
+use crate::scene::Scene;
 
 /// The commands that take contacts with friction.
 const COMMANDS: [&str; 3] = ["solve", "verify", "certify"];
@@ -34,17 +34,6 @@ fn refuse_coulomb(scene: &Scene) -> Result<(), CliError> {
     };
     if !follows_coulomb(scene) {
         return Ok(());
-    }
-    if scene.kinematics == Kinematics::Axisymmetric {
-        let what = "`coefficient`: Coulomb friction of bodies of revolution is not solved".to_string();
-        return stop(what, "leave `friction` out of axisymmetric scenes");
-    }
-    if let Some(quantity) = scene.quantities.first() {
-        let what = format!(
-            "quantity `{}`: an interval is for one problem of least energy, and with Coulomb friction there is none",
-            quantity.name
-        );
-        return stop(what, "leave the [[quantities]] out, or give the bound itself with friction = { bound = … }");
     }
     if let Some(range) = scene.ranges.first() {
         let what = format!(

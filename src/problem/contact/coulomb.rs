@@ -3,10 +3,12 @@
 //! With τ̄ held the law is that of a given bound, and the problem is one of least energy. What holds it is a field of this problem: τ̄ is
 //! linear on every pair, and jumps between them where pressures do. A finer mesh has the bound of the mesh that it was made of.
 
+use std::borrow::Cow;
+
 use super::normals::Coarser;
 use crate::element::Section;
 use crate::mesh::Triangulation;
-use crate::problem::{ContactPair, Friction, Problem};
+use crate::problem::{ContactPair, Friction, Interface, Problem};
 use crate::scene::Scene;
 
 /// True if a scene has a contact with Coulomb friction.
@@ -33,6 +35,15 @@ impl Problem {
             }
         }
         problem
+    }
+
+    /// This problem with a bound of one where contacts have Coulomb friction, for what depends on where friction is and not on how large.
+    pub fn where_friction_acts(&self) -> Cow<'_, Problem> {
+        if !follows_coulomb(&self.scene) {
+            return Cow::Borrowed(self);
+        }
+        let of = |interface: &Interface| vec![[1.0; 2]; interface.pairs.len()];
+        Cow::Owned(self.with_friction_bounds(&self.interfaces.iter().map(of).collect::<Vec<_>>()))
     }
 
     /// Friction of `pair` with a bound of zero, which problems do not have.

@@ -27,7 +27,7 @@ pub(super) fn card(report: &Report) -> Markup {
 }
 
 fn one(index: usize, summary: &QuantitySummary, report: &Report) -> Markup {
-    let word = if report.is_guaranteed() { "guaranteed" } else { "for the data as represented on the mesh" };
+    let word = if report.is_guaranteed() { report.firmness() } else { "for the data as represented on the mesh" };
     let id = format!("quantity-{index}");
     html! {
         div id=(id) {
@@ -73,6 +73,7 @@ pub(super) fn table(report: &Report) -> Markup {
         p {
             "The exact value of each quantity lies between its ends, which are rounded outwards"
             @if !report.is_guaranteed() { ", for the data as represented on the mesh; the notes say what weakens the guarantee" }
+            @if report.coulomb.is_some() { ", for the friction bound that was found" }
             ". The value is that of the dual solution, for displacements that of the displacement built from it, and nearer to \
             the truth than the middle. First order: the interval that follows from the energies alone. "
             code { "quantities.csv" } " has the same for a spreadsheet."

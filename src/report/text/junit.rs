@@ -104,7 +104,7 @@ fn quantity_case(quantity: &QuantitySummary, report: &Report) -> TestCase {
         status
     };
     let mut case = TestCase::new(format!("quantity/{}", quantity.name), status);
-    case.set_system_out(quantity.in_words(report.is_guaranteed()));
+    case.set_system_out(quantity.in_words(report.firmness()));
     with_class(case, &report.scene)
 }
 

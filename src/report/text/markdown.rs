@@ -61,7 +61,11 @@ fn quantities(text: &mut String, report: &Report) {
     if report.quantities.is_empty() {
         return;
     }
-    let held = if report.is_guaranteed() { "guaranteed within" } else { "within, for the data on the mesh" };
+    let held = match (report.is_guaranteed(), &report.coulomb) {
+        (true, None) => "guaranteed within",
+        (true, Some(_)) => "guaranteed within, for the friction bound that was found",
+        (false, _) => "within, for the data on the mesh",
+    };
     let _ = writeln!(text, "| quantity | kind | value | {held} | half-width | | other values |");
     let _ = writeln!(text, "|---|---|--:|--:|--:|---|---|");
     for quantity in report.quantities.iter().take(LISTED) {

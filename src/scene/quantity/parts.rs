@@ -52,7 +52,8 @@ impl Context<'_> {
             let (table, found, known) = (self.table.to_owned(), word.value.clone(), vec![TANGENTIAL.to_owned()]);
             return self.fail(word.span(), Fault::UnknownWord { key: "component", table, found, known });
         }
-        if self.named.conditions.contacts[contact].friction.is_none() {
+        let resists = &self.named.conditions.contacts[contact];
+        if resists.friction.is_none() && resists.coefficient.is_none() {
             let remedy =
                 "delete `component`, or give the contact a `friction`: without it there is no tangential force";
             return self.misplaced("component", word.span(), "a contact without friction", remedy);

@@ -1,11 +1,14 @@
 //! Bounds of friction from pressures: linear on every pair, with the force and the moment of μ times the pressure there.
+//!
+//! On a body of revolution pressures are weighted with the distance r from the axis, and force and moment are those of r τ̄.
 
 use crate::bounds::absolute;
 use crate::compare::BoundDistance;
+use crate::compare::contact::pressure::{Piece, unweighted};
 use crate::dual::DualSolution;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::polynomial::{side, subdivision};
-use crate::problem::{ContactPair, Interface, Problem, Scales};
+use crate::problem::{ContactPair, EdgeWeight, Interface, Problem, Scales};
 
 /// τ̄ at the two ends of each pair, contact by contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +27,10 @@ impl Bounds {
         Bounds(
             all.map(|(index, interface)| {
                 let mu = problem.coefficient(index).unwrap_or(0.0);
-                let of = |pair: &ContactPair| linear(&most(problem, dual, pair, (mu, none)));
+                let of = |pair: &ContactPair| {
+                    let weight = problem.without_resistance(pair).weight;
+                    linear(&most(problem, dual, pair, (mu, none)), &weight)
+                };
                 interface.pairs.iter().map(of).collect()
             })
             .collect(),
@@ -57,16 +63,25 @@ fn most(problem: &Problem, dual: &DualSolution, pair: &ContactPair, (mu, none): 
     if t.is_empty() { vec![0.0] } else { t.into_iter().map(of).collect() }
 }
 
-/// The end values of the linear function that has force and moment of `p` ≥ 0; where that falls below zero, the one that is zero at
-/// this end and has its force.
-fn linear(p: &[f64]) -> [f64; 2] {
+/// The end values of the linear function that has, times the weight, force and moment of `p` ≥ 0; where that falls below zero, the one that
+/// is zero at this end and has its force.
+fn linear(p: &[f64], weight: &EdgeWeight) -> [f64; 2] {
+    match (p, weight.ends()) {
+        ([constant], [a, b]) if a == b => return [*constant / a; 2],
+        ([first, last], [a, b]) if a == b => return [*first / a, *last / b],
+        _ => {}
+    }
     let [force, moment] = [side::integral(p, &[1.0]), side::integral(p, &[0.0, 1.0])];
-    let ends = [4.0 * force - 6.0 * moment, 6.0 * moment - 2.0 * force];
-    match p {
-        [constant] => [*constant; 2],
-        [a, b] => [*a, *b],
-        _ if ends[0] < 0.0 => [0.0, 2.0 * force],
-        _ if ends[1] < 0.0 => [2.0 * force, 0.0],
+    // Force and moment of the functions that are one at one end and zero at the other.
+    let [[f, m], [g, n]] = [[1.0, 0.0], [0.0, 1.0]].map(|hat| {
+        let hat = weight.times(&hat);
+        [side::integral(&hat, &[1.0]), side::integral(&hat, &[0.0, 1.0])]
+    });
+    let determinant = f * n - g * m;
+    let ends = [(force * n - g * moment) / determinant, (f * moment - force * m) / determinant];
+    match ends {
+        [a, _] if a < 0.0 => [0.0, force / g],
+        [_, b] if b < 0.0 => [force / f, 0.0],
         _ => ends,
     }
 }
@@ -90,23 +105,32 @@ pub fn distances(problem: &Problem, dual: &DualSolution) -> Vec<Option<BoundDist
     let none = Scales::new(problem).round_off.stress;
     let of = |(index, interface): (usize, &Interface)| {
         let mu = problem.coefficient(index)?;
+        let weighted = interface.pairs.iter().map(|pair| Piece::polynomial(most(problem, dual, pair, (mu, none))));
+        let weighted: Vec<Piece> = weighted.collect();
+        let plain = unweighted(problem, interface, &weighted);
         let (mut largest, mut peak, mut between, mut force) = (0.0_f64, 0.0_f64, 0.0, 0.0);
-        for pair in &interface.pairs {
-            let most = most(problem, dual, pair, (mu, none));
-            let most = if most.len() == 1 { vec![most[0]; 2] } else { most };
+        for ((pair, weighted), plain) in interface.pairs.iter().zip(&weighted).zip(&plain) {
             let bound = pair.friction.map_or([0.0; 2], |friction| friction.bound);
-            let wide: Vec<f64> = side::linear(bound, most.len() - 1).collect();
-            let [up, down]: [Vec<f64>; 2] =
-                [1.0, -1.0].map(|s| wide.iter().zip(&most).map(|(a, b)| s * (a - b)).collect());
-            largest = largest.max(subdivision::largest(&up).0).max(subdivision::largest(&down).0);
-            peak = peak.max(subdivision::largest(&most).0);
-            between += pair.length * absolute(&up, &[1.0; 2]);
-            force += pair.length * side::integral(&most, &[1.0]);
+            let [weighted, plain] = [weighted, plain].map(|piece| piece.coefficients().collect::<Vec<f64>>());
+            let off = difference(&bound, &plain);
+            let size: Vec<f64> = off.iter().map(|off| -off).collect();
+            largest = largest.max(subdivision::largest(&off).0).max(subdivision::largest(&size).0);
+            peak = peak.max(subdivision::largest(&plain).0);
+            let weight = problem.without_resistance(pair).weight;
+            between += pair.length * absolute(&difference(&weight.times(&bound), &weighted), &[1.0; 2]);
+            force += pair.length * side::integral(&weighted, &[1.0]);
         }
         let part = |x: f64, whole: f64| if x == 0.0 { 0.0 } else { x / whole };
         Some(BoundDistance { largest, largest_relative: part(largest, peak), relative: part(between, force) })
     };
     problem.interfaces.iter().enumerate().map(of).collect()
+}
+
+/// Coefficients of f − g.
+fn difference(f: &[f64], g: &[f64]) -> Vec<f64> {
+    let degree = f.len().max(g.len()) - 1;
+    let [f, g] = [f, g].map(|own| side::elevate(own, degree));
+    f.iter().zip(&g).map(|(f, g)| f - g).collect()
 }
 
 #[cfg(test)]
@@ -118,12 +142,12 @@ mod tests {
         for p in
             [vec![2.0], vec![1.0, 3.0], vec![0.0, 1.0, 0.5], vec![0.0, 0.0, 0.0, 5.0], vec![3.0, 0.0, 0.0, 0.0, 0.1]]
         {
-            let bound = linear(&p);
+            let bound = linear(&p, &EdgeWeight::default());
             let force = side::integral(&p, &[1.0]);
             assert!((0.5 * (bound[0] + bound[1]) - force).abs() < 1e-14 * force && bound[0] >= 0.0 && bound[1] >= 0.0);
         }
         // s(1 − s)·2 + s²: force and moment are those of 1/6 + s.
-        let [a, b] = linear(&[0.0, 1.0, 1.0]);
+        let [a, b] = linear(&[0.0, 1.0, 1.0], &EdgeWeight::default());
         let moment = side::integral(&[0.0, 1.0, 1.0], &[0.0, 1.0]);
         assert!(((a + 2.0 * b) / 6.0 - moment).abs() < 1e-15);
     }

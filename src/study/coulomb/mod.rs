@@ -214,6 +214,10 @@ fn no_fixed_point(problem: &Problem, runs: Vec<(From, Iteration)>) -> StudyError
         return StudyError::NoEquilibrium { sentence, motion, work, problem };
     }
     let law = "Coulomb's friction has no principle of least energy, and its iteration need not arrive.";
+    let last = match &refused {
+        Some(StudyError::NoEquilibrium { sentence, .. }) => format!(" With the last bound: {sentence}"),
+        _ => String::new(),
+    };
     let wedging = wedges.first().map_or(String::new(), |wedged| format!(" {}", in_words(wedged)));
     StudyError::Coulomb(match (wanders, balances) {
         (_, false) => "no forces of contact within the cones of Coulomb's friction balance the loads, so that no solution exists; a support, \
@@ -227,7 +231,7 @@ fn no_fixed_point(problem: &Problem, runs: Vec<(From, Iteration)>) -> StudyError
         ),
         (None, true) => format!(
             "no friction bound was found that goes with its pressure: on the way to it the bodies lose their hold, though forces within \
-             the cones of friction could balance the loads. {law}{wedging} Whether there is a solution is not known. Give the bound \
+             the cones of friction could balance the loads.{last} {law}{wedging} Whether there is a solution is not known. Give the bound \
              itself with friction = {{ bound = … }}, press the bodies together, or hold them by supports"
         ),
     })

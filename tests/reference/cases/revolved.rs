@@ -1,5 +1,5 @@
-//! Bodies of revolution: Lamé's tube and sphere, a warm tube, a press fit, a turning spindle and disc, Hertz's sphere, Boussinesq's punch, Sneddon's
-//! cone.
+//! Bodies of revolution: Lamé's tube and sphere, a warm tube, a press fit, a valve in its seat, a turning spindle and disc, Hertz's sphere,
+//! Boussinesq's punch, Sneddon's cone.
 
 use std::f64::consts::PI;
 
@@ -197,5 +197,29 @@ fn cone() {
         }
         let last = points.iter().filter(|p| p[1] > 1e-3 * force).fold(0.0_f64, |m, p| m.max(p[0]));
         assert!((last - 1.0).abs() <= 0.05, "pressure up to {last}");
+    }
+}
+
+/// The seat carries N = P/(sin α + μ cos α) across its face and μ N along it, by stresses, by displacements with the same bound of friction,
+/// and by displacements with limits of their own.
+#[test]
+fn valve() {
+    let report = sound("valve");
+    let (sin, cos) = 20.0_f64.to_radians().sin_cos();
+    let load = 0.01 * PI * 0.6639702342662023_f64.powi(2);
+    let normal = load / (sin + 0.2 * cos);
+    carries(&report, 0, [0.0, load]);
+    // The bound misses of μ times the pressure what a linear function times r does.
+    close(report.number("/contact/0/friction/force"), 0.2 * normal, 5e-3);
+    answers(&report, 0, normal, 2e-2);
+    assert_eq!(report.number("/contact/0/friction/slip_fraction"), 1.0);
+    assert_eq!(report.0["coulomb"]["wedging"].as_array().map_or(0, Vec::len), 0);
+    if with_reference() {
+        for degree in [1, 2] {
+            let name = format!("coulomb/FEniCSx P{degree}/friction-force");
+            let own = report.0["remarks"].as_array().into_iter().flatten().find(|check| check["name"] == name.as_str());
+            let force = own.and_then(|check| check["reference"].as_f64()).unwrap_or(f64::NAN);
+            close(force, 0.2 * normal, 1e-8);
+        }
     }
 }
