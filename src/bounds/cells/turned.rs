@@ -305,7 +305,7 @@ mod tests {
             [[1e-6, 0.0], [1.0, 0.0], [1.0, 1.0], [1e-6, 1.0]],
         ];
         for corners in sections {
-            for nodes in [4, 8, 9] {
+            for nodes in [4, 9] {
                 let cell = Quadrilateral::new(corners, &nodal(&corners, nodes)).expect("convex");
                 let found = strain_energy(&cell, &material(), 0.0);
                 let fine = graded(&Turned::new(&cell, material().revolved(), 0.0));
