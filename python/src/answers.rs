@@ -10,13 +10,13 @@ use hypercircle::report::{ContactSummary, QuantitySummary};
 #[pyclass(frozen, module = "hypercircle")]
 pub struct Quantity {
     of: QuantitySummary,
-    guaranteed: bool,
+    firmness: &'static str,
 }
 
 impl Quantity {
-    /// `guaranteed` where the interval holds for the scene as written.
-    pub fn new(of: QuantitySummary, guaranteed: bool) -> Self {
-        Quantity { of, guaranteed }
+    /// With how firmly its interval holds, before "within".
+    pub fn new(of: QuantitySummary, firmness: &'static str) -> Self {
+        Quantity { of, firmness }
     }
 }
 
@@ -76,7 +76,7 @@ impl Quantity {
     }
 
     fn __repr__(&self) -> String {
-        format!("<Quantity {}>", self.of.in_words(self.guaranteed))
+        format!("<Quantity {}>", self.of.in_words(self.firmness))
     }
 }
 

@@ -112,10 +112,11 @@ impl Solution {
     fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let Solved { run, comparison, answers } = &self.solved;
         let guaranteed = !run.certified.problem.notes.iter().any(|note| note.weakens_guarantee);
+        let firmness = report::firmness(guaranteed, run.coulomb.is_some());
         let out = PyDict::new(py);
         for summary in summaries(&run.certified, answers, comparison) {
             let name = summary.name.clone();
-            out.set_item(name, Bound::new(py, Quantity::new(summary, guaranteed))?)?;
+            out.set_item(name, Bound::new(py, Quantity::new(summary, firmness))?)?;
         }
         Ok(out)
     }
