@@ -110,7 +110,8 @@ pub fn on_contact(
     let drawn = unweighted(problem, interface, &pieces);
     for (((pair, pressure), t), drawn) in interface.pairs.iter().zip(pressures).zip(&weighted).zip(drawn) {
         let ends = pair.friction.map_or([0.0; 2], |friction| friction.bound);
-        let most = pair.friction.map_or_else(|| vec![0.0], |friction| friction.weighted());
+        // What stresses of this degree reach: linear ones stay below a bound that is quadratic with the weight.
+        let most = pair.friction.map_or_else(|| vec![0.0], |friction| friction.coefficients(t.len() - 1));
         let place = |s: f64| pair.arc[0] + s * (pair.arc[1] - pair.arc[0]);
         traction.extend(drawn.points().into_iter().map(|[s, t]| [place(s), t]));
         bound.extend([[pair.arc[0], ends[0]], [pair.arc[1], ends[1]]]);
