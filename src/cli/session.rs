@@ -133,8 +133,15 @@ impl Session {
             |problem, options: &Options| self.adapted(problem, (method.as_ref(), options), &admission, (solve, limits));
         let (adapted, coulomb) = if follows_coulomb(&problem.scene) {
             let told = |text: &str| self.progress.phase(text.to_string());
-            study::solve_coulomb_to(solve.tolerance, problem, (method.as_ref(), &options), certify, adapt, told)
-                .map(|(adapted, coulomb)| (adapted, Some(coulomb)))
+            study::solve_coulomb_to(
+                (solve.tolerance, limits.max_seconds),
+                problem,
+                (method.as_ref(), &options),
+                certify,
+                adapt,
+                told,
+            )
+            .map(|(adapted, coulomb)| (adapted, Some(coulomb)))
         } else if solve.is_adaptive() {
             adapt(problem, &options).map(|adapted| (adapted, None))
         } else {

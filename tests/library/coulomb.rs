@@ -2,12 +2,14 @@
 
 use crate::support::random::Random;
 use crate::support::toml::Toml;
-use hypercircle::dual::{Condensed, Options};
+use hypercircle::dual::{Condensed, DualMethod, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
 use hypercircle::statics::{friction_can_balance, wedged};
-use hypercircle::study::{Certified, Coulomb, End, StudyError, answers, certify_divided, solve_coulomb};
+use hypercircle::study::{
+    Certified, Coulomb, End, Goal, StudyError, adapt, answers, certify_divided, solve_coulomb, solve_coulomb_to,
+};
 
 fn problem(text: &str) -> Problem {
     let scene = Scene::parse(text, "scene.toml".as_ref()).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -148,6 +150,25 @@ fn quantities_are_for_the_bound_that_was_found() {
         // The bounds differ by what a linear function misses of the pressure.
         assert!(a <= d && c <= b, "{}: {a} {b} {c} {d}", coarse.name);
     }
+}
+
+/// A limit on time that has passed keeps the bound of the coarse mesh, and says how far it is from that of the fine one.
+#[test]
+fn a_bound_is_kept_where_no_time_is_left_for_another() {
+    let (options, method) = (Options::default(), Condensed::default());
+    let to = |seconds: Option<f64>| {
+        let certify = |held, method: &dyn DualMethod, options: &Options| certify_divided(held, method, options);
+        let goal = Goal { max_triangles: Some(400), ..Goal::new(0.02) };
+        let adapt = |held, options: &Options| adapt(held, &method, options, &goal, |_| ());
+        let given = problem(&wedge(20.0, 0.2, 0.01).0.replace("size = 0.25", "size = 0.5"));
+        solve_coulomb_to((Some(0.02), seconds), given, (&method, &options), certify, adapt, |_| ()).expect("solves")
+    };
+    let (kept, coulomb) = to(Some(0.0));
+    let far = coulomb.distances.iter().flatten().fold(0.0_f64, |m, distance| m.max(distance.relative));
+    let (sought, coulomb) = to(None);
+    let near = coulomb.distances.iter().flatten().fold(0.0_f64, |m, distance| m.max(distance.relative));
+    assert!(far > 1e-3 && near < 0.1 * far, "{far} {near}");
+    assert!(kept.certified.problem.mesh.triangles.len() <= sought.certified.problem.mesh.triangles.len());
 }
 
 /// A given bound, however large, moves no load to the borderline of equilibrium: nothing but a lift is allowed, and the loads work against it.

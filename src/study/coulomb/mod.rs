@@ -15,6 +15,8 @@ mod iteration;
 mod models;
 mod summary;
 
+use std::time::Instant;
+
 use super::adaptive::Adapted;
 use super::certified::{Certified, StudyError};
 use crate::bounds::{Bracket, UpperBound};
@@ -151,12 +153,12 @@ pub fn solve_coulomb(
 const ROUNDS: usize = 4;
 
 /// Where there is a `tolerance` of the relative error, solves and refines in turn until the bracket for the bound that was found meets it:
-/// `adapt` refines with the bound held.
+/// `adapt` refines with the bound held. Where `seconds` would pass before a bound is found on a finer mesh, that of the coarser one is kept.
 ///
 /// # Errors
 /// As [`solve_coulomb`].
 pub fn solve_coulomb_to(
-    tolerance: Option<f64>,
+    (tolerance, seconds): (Option<f64>, Option<f64>),
     mut problem: Problem,
     (method, options): (&dyn DualMethod, &Options),
     certify: impl Fn(Problem, &dyn DualMethod, &Options) -> Result<Certified, StudyError>,
@@ -165,10 +167,13 @@ pub fn solve_coulomb_to(
 ) -> Result<(Adapted, Coulomb), StudyError> {
     let mut options = options.clone();
     let (mut history, mut stopped, mut advice) = (Vec::new(), None, None);
-    let mut rounds = 0;
+    let (begin, mut rounds) = (Instant::now(), 0);
     loop {
-        let (certified, coulomb) =
+        let before = begin.elapsed().as_secs_f64();
+        let (certified, mut coulomb) =
             solve_coulomb(&problem, method, &options, |held| certify(held, method, &options), &mut told)?;
+        let per_triangle =
+            (begin.elapsed().as_secs_f64() - before) / certified.problem.mesh.triangles.len().max(1) as f64;
         let upper = certified.bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper());
         let met = tolerance.is_none_or(|tolerance| certified.bracket.relative_error(upper) <= tolerance);
         if met || stopped.is_some() || rounds == ROUNDS {
@@ -177,6 +182,13 @@ pub fn solve_coulomb_to(
         }
         let adapted = adapt(certified.problem, &options)?;
         rounds += 1;
+        let finer = &adapted.certified;
+        let needed = per_triangle * finer.problem.mesh.triangles.len() as f64;
+        if seconds.is_some_and(|most| begin.elapsed().as_secs_f64() + needed > most) {
+            coulomb.distances = distances(&finer.problem, &finer.dual);
+            history.extend(adapted.history);
+            return Ok((Adapted { history, ..adapted }, coulomb));
+        }
         let stress = &adapted.certified.dual.stress;
         let degrees = || (0..stress.len()).map(|t| stress.degree(t));
         let same = matches!(options.elements, Elements::Uniform(element) if degrees().all(|p| p == element.degree()));
