@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 use crate::errors::fault;
 use crate::kinematics::kinematics_named;
 use hypercircle::element::subtriangle::{self, Moments};
-use hypercircle::element::{Block, EquilibriumElement, Material};
+use hypercircle::element::{Block, EquilibriumElement, Material, Section};
 
 /// A counter-clockwise triangle with finite corners.
 fn proper(corners: [[f64; 2]; 3]) -> PyResult<[[f64; 2]; 3]> {
@@ -41,7 +41,7 @@ pub fn element<'py>(
     let material = Material::isotropic(kinematics_named(kinematics)?, young, poisson);
     let modes = Block.modes(corners, &material, &body_force.into());
     let count = modes.parameters();
-    let fields = Block.mode_stresses(corners, &modes);
+    let fields = Section::Slice.mode_stresses(&Block, corners, &modes);
     let value = |node: usize, c: usize| (0..count).map(|k| fields[k][node][c]).collect::<Vec<f64>>();
     let stress: Vec<Vec<Vec<f64>>> = (0..9).map(|node| (0..3).map(|c| value(node, c)).collect()).collect();
     let row = |i: usize| modes.tractions().map(|mode| mode[i]).collect::<Vec<f64>>();

@@ -148,24 +148,6 @@ pub trait EquilibriumElement: Sync {
     fn unloaded(&self, _corners: [[f64; 2]; 3], _material: &Material) -> Vec<Vec<[f64; 3]>> {
         Vec::new()
     }
-
-    /// Nodal stresses of every mode.
-    fn mode_stresses(&self, corners: [[f64; 2]; 3], modes: &Modes<'_>) -> Vec<Vec<[f64; 3]>> {
-        let of = |unit: &[f64], out: &mut [[f64; 3]]| self.stresses(corners, &BodyForce::NONE, modes, unit, 0.0, out);
-        one_by_one(self.parameters(), self.degree(), of)
-    }
-}
-
-/// Nodal stresses of `count` modes, from a function that makes those of mode parameters.
-fn one_by_one(count: usize, degree: usize, stresses: impl Fn(&[f64], &mut [[f64; 3]])) -> Vec<Vec<[f64; 3]>> {
-    let of = |k: usize| {
-        let mut unit = vec![0.0; count];
-        unit[k] = 1.0;
-        let mut out = vec![[0.0; 3]; 3 * lattice_len(degree)];
-        stresses(&unit, &mut out);
-        out
-    };
-    (0..count).map(of).collect()
 }
 
 /// Sizes of the arrays of one element.

@@ -12,7 +12,7 @@ use super::polynomial::triangle;
 use super::revolved::{Held, Ring, Tensor, Weighted, rule};
 use super::{
     Displacement, EquilibriumElement, Layout, Material, Modes, ModesMut, Strains, StressField, displacement,
-    lattice_len, one_by_one,
+    lattice_len,
 };
 use crate::load::BodyForce;
 
@@ -138,12 +138,14 @@ impl Section {
         corners: Corners,
         modes: &Modes<'_>,
     ) -> Vec<Vec<[f64; 3]>> {
-        match self {
-            Section::Slice => element.mode_stresses(corners, modes),
-            Section::Revolved { .. } => {
-                one_by_one(modes.parameters(), element.degree(), |unit, out| Ring::stresses(modes, unit, 0.0, out))
-            }
-        }
+        let of = |k: usize| {
+            let mut unit = vec![0.0; modes.parameters()];
+            unit[k] = 1.0;
+            let mut out = vec![[0.0; 3]; 3 * lattice_len(element.degree())];
+            self.sum(element, (corners, &BodyForce::NONE), modes, (&unit, 0.0), &mut out);
+            out
+        };
+        (0..modes.parameters()).map(of).collect()
     }
 
     /// Nodal stresses of mode parameters, as [`EquilibriumElement::stresses`] has them.
@@ -156,9 +158,21 @@ impl Section {
         s: &[f64],
         out: &mut [[f64; 3]],
     ) {
+        self.sum(element, (corners, force), modes, (s, 1.0), out);
+    }
+
+    /// Nodal stresses of mode parameters and so many times the particular field.
+    fn sum(
+        self,
+        element: &dyn EquilibriumElement,
+        (corners, force): (Corners, &BodyForce),
+        modes: &Modes<'_>,
+        (s, particular): (&[f64], f64),
+        out: &mut [[f64; 3]],
+    ) {
         match self {
-            Section::Slice => element.stresses(corners, force, modes, s, 1.0, out),
-            Section::Revolved { .. } => Ring::stresses(modes, s, 1.0, out),
+            Section::Slice => element.stresses(corners, force, modes, s, particular, out),
+            Section::Revolved { .. } => Ring::stresses(modes, s, particular, out),
         }
     }
 

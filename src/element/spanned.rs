@@ -253,7 +253,7 @@ impl EquilibriumElement for Spanned {
 
 #[cfg(test)]
 mod tests {
-    use super::super::block;
+    use super::super::{Section, block};
     use super::*;
 
     /// The modes of the block, mixed and with one field twice, as if somebody had found them.
@@ -261,7 +261,7 @@ mod tests {
         let material = Material::isotropic(crate::scene::Kinematics::PlaneStress, 3.0, 0.1);
         let spans = move |corners| {
             let modes = block(degree).modes(corners, &material, &BodyForce::NONE);
-            let fields = block(degree).mode_stresses(corners, &modes);
+            let fields = Section::Slice.mode_stresses(block(degree), corners, &modes);
             let mix = |k: usize| {
                 let add = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|c| 2.0 * a[c] - 0.3 * b[c]);
                 fields[k].iter().zip(&fields[(k + 1) % fields.len()]).map(add).collect()

@@ -80,20 +80,6 @@ impl Report {
     pub fn is_guaranteed(&self) -> bool {
         !self.notes.iter().any(|note| note.weakens_guarantee)
     }
-
-    /// How firmly intervals hold, before "within".
-    pub fn firmness(&self) -> &'static str {
-        firmness(self.is_guaranteed(), self.coulomb.is_some())
-    }
-}
-
-/// As [`Report::firmness`], of a problem whose notes leave the guarantee or not, with Coulomb friction or without.
-pub fn firmness(guaranteed: bool, coulomb: bool) -> &'static str {
-    match (guaranteed, coulomb) {
-        (false, _) => "indicated",
-        (true, true) => "for the friction bound that was found guaranteed",
-        (true, false) => "guaranteed",
-    }
 }
 
 /// The verdict.

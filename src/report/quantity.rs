@@ -175,6 +175,22 @@ impl QuantitySummary {
     }
 }
 
+impl Report {
+    /// How firmly intervals hold, before "within".
+    pub fn firmness(&self) -> &'static str {
+        firmness(self.is_guaranteed(), self.coulomb.is_some())
+    }
+}
+
+/// As [`Report::firmness`], of a problem whose notes leave the guarantee or not, with Coulomb friction or without.
+pub fn firmness(guaranteed: bool, coulomb: bool) -> &'static str {
+    match (guaranteed, coulomb) {
+        (false, _) => "indicated",
+        (true, true) => "for the friction bound that was found guaranteed",
+        (true, false) => "guaranteed",
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::report::sample::{Sample, Verdict};

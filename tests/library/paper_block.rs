@@ -2,7 +2,7 @@
 
 use hypercircle::dual::paper::BlockMatrices;
 use hypercircle::element::subtriangle::{Matrix, Moments, flexibility, shift, side_map, stress_map};
-use hypercircle::element::{Block, EquilibriumElement, Material};
+use hypercircle::element::{Block, EquilibriumElement, Material, Section};
 use hypercircle::load::BodyForce;
 use hypercircle::scene::Kinematics;
 use nalgebra::DMatrix;
@@ -48,7 +48,7 @@ proptest! {
                 }
             }
         }
-        let fields = Block.mode_stresses(corners, &modes);
+        let fields = Section::Slice.mode_stresses(&Block, corners, &modes);
         let other = DMatrix::from_fn(27, 9, |i, k| fields[k][i / 3][i % 3]);
         let svd = own.clone().svd(true, true);
         prop_assert!(svd.singular_values.min() > 1e-3 * svd.singular_values.max(), "nine independent fields");

@@ -27,10 +27,7 @@ impl Bounds {
         Bounds(
             all.map(|(index, interface)| {
                 let mu = problem.coefficient(index).unwrap_or(0.0);
-                let of = |pair: &ContactPair| {
-                    let weight = problem.without_resistance(pair).weight;
-                    linear(&most(problem, dual, pair, (mu, none)), &weight)
-                };
+                let of = |pair: &ContactPair| linear(&most(problem, dual, pair, (mu, none)), &weight(problem, pair));
                 interface.pairs.iter().map(of).collect()
             })
             .collect(),
@@ -113,17 +110,22 @@ pub fn distances(problem: &Problem, dual: &DualSolution) -> Vec<Option<BoundDist
             let bound = pair.friction.map_or([0.0; 2], |friction| friction.bound);
             let [weighted, plain] = [weighted, plain].map(|piece| piece.coefficients().collect::<Vec<f64>>());
             let off = difference(&bound, &plain);
-            let size: Vec<f64> = off.iter().map(|off| -off).collect();
-            largest = largest.max(subdivision::largest(&off).0).max(subdivision::largest(&size).0);
+            for off in [&off, &difference(&plain, &bound)] {
+                largest = largest.max(subdivision::largest(off).0);
+            }
             peak = peak.max(subdivision::largest(&plain).0);
-            let weight = problem.without_resistance(pair).weight;
-            between += pair.length * absolute(&difference(&weight.times(&bound), &weighted), &[1.0; 2]);
+            let off = difference(&weight(problem, pair).times(&bound), &weighted);
+            between += pair.length * absolute(&off, &[1.0; 2]);
             force += pair.length * side::integral(&weighted, &[1.0]);
         }
         let part = |x: f64, whole: f64| if x == 0.0 { 0.0 } else { x / whole };
         Some(BoundDistance { largest, largest_relative: part(largest, peak), relative: part(between, force) })
     };
     problem.interfaces.iter().enumerate().map(of).collect()
+}
+
+fn weight(problem: &Problem, pair: &ContactPair) -> EdgeWeight {
+    EdgeWeight::of_pair(problem.section(), &problem.mesh, pair)
 }
 
 /// Coefficients of f − g.

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::element::geometry::sub_corners;
 use crate::element::polynomial::quadrature::triangle_rule;
-use crate::element::{EquilibriumElement, Material, lattice_len};
+use crate::element::{EquilibriumElement, Material, Section, lattice_len};
 
 /// A stress of degree p on every part of a triangle, by its values (xx, yy, xy) on the lattice.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,7 +101,7 @@ impl Fields {
             corners,
             parts: (0..3).map(|sub| sub_corners(corners, sub)).collect(),
             degree,
-            fields: element.mode_stresses(corners, &modes).into_iter().map(nodal).collect(),
+            fields: Section::Slice.mode_stresses(element, corners, &modes).into_iter().map(nodal).collect(),
             tractions: modes.tractions().map(<[f64]>::to_vec).collect(),
             particular: Some(particular),
             material: *material,

@@ -7,7 +7,7 @@
 //!
 //! and the minimum is taken where three of the twelve terms vanish: all 220 choices are tried.
 
-use hypercircle::element::{Block, EquilibriumElement, Material};
+use hypercircle::element::{Block, EquilibriumElement, Material, Section};
 use hypercircle::load::BodyForce;
 use hypercircle::scene::Kinematics;
 use nalgebra::{DMatrix, Matrix3, SMatrix, Vector3};
@@ -47,7 +47,7 @@ pub fn equilibrium(p: [[f64; 2]; 3]) -> SMatrix<f64, 3, 12> {
 pub fn stress_of_load(p: [[f64; 2]; 3]) -> DMatrix<f64> {
     let modes = Block.modes(p, &Material::isotropic(Kinematics::PlaneStress, 1.0, 0.0), &BodyForce::NONE);
     let traction = DMatrix::from_column_slice(12, 9, modes.traction());
-    let fields = Block.mode_stresses(p, &modes);
+    let fields = Section::Slice.mode_stresses(&Block, p, &modes);
     let stress = DMatrix::from_fn(27, 9, |i, k| fields[k][i / 3][i % 3]);
     // By a factorisation that does not iterate: singular values that nearly coincide cost the other one half of its digits.
     let qr = traction.qr();
