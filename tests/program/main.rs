@@ -1,6 +1,7 @@
 //! The program, called as a user calls it, without FEniCSx but where a test says so.
 
 mod calculix_results;
+mod carried_fields;
 mod cases;
 mod certify;
 mod chart;
