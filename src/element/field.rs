@@ -161,7 +161,10 @@ impl StressField {
 }
 
 /// Bernstein coefficients of the polynomial that has these values at equally spaced points.
-fn to_bernstein<'a>(degree: usize, at: impl Fn(usize) -> [f64; 3] + 'a) -> impl Iterator<Item = [f64; 3]> + 'a {
+pub(super) fn to_bernstein<'a>(
+    degree: usize,
+    at: impl Fn(usize) -> [f64; 3] + 'a,
+) -> impl Iterator<Item = [f64; 3]> + 'a {
     let matrix = from_equispaced(degree);
     (0..=degree).map(move |k| {
         let mut value = [0.0; 3];

@@ -7,7 +7,7 @@ use super::law::Law;
 use super::rule::rule;
 use super::stress::to_bernstein;
 use super::{Held, ROUGH};
-use crate::element::field::{from_equispaced, lattice};
+use crate::element::field::{self, lattice};
 use crate::element::geometry::{from_centroid, gradients};
 use crate::element::polynomial::triangle;
 use crate::element::{Layout, Modes, ModesMut, lattice_len};
@@ -157,22 +157,14 @@ impl Ring {
     /// Bernstein coefficients of the tractions of a stress given by nodal values.
     fn traction_of(&self, nodal: &[[f64; 3]]) -> Vec<f64> {
         let p = self.degree;
-        let matrix = from_equispaced(p);
-        let mut out = vec![0.0; 6 * (p + 1)];
-        for side in 0..3 {
-            let [n, m] = self.normal(side);
-            let own = &nodal[side * lattice_len(p)..];
-            for k in (0..=p).filter(|k| !self.vanishes(side, *k)) {
-                let at = 2 * (side * (p + 1) + k);
-                for j in 0..=p {
-                    let [rr, zz, rz] = own[j * (j + 1) / 2];
-                    let weight = matrix[k * (p + 1) + j];
-                    out[at] += weight * (rr * n + rz * m);
-                    out[at + 1] += weight * (rz * n + zz * m);
-                }
-            }
-        }
-        out
+        let of_side = |side: usize| {
+            let ([n, m], own) = (self.normal(side), &nodal[side * lattice_len(p)..]);
+            let traction = move |(k, [rr, zz, rz]): (usize, [f64; 3])| {
+                if self.vanishes(side, k) { [0.0; 2] } else { [rr * n + rz * m, rz * n + zz * m] }
+            };
+            field::to_bernstein(p, |j| own[j * (j + 1) / 2]).enumerate().map(traction)
+        };
+        (0..3).flat_map(of_side).flatten().collect()
     }
 
     /// Outward unit normal of a side.
