@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::energy::work_on_edges;
-use crate::element::{Displacement, block};
+use super::energy::{square_of_section, work_on_edges};
+use crate::element::{Displacement, StressField, block};
 use crate::load::BodyForce;
 use crate::problem::{Oscillation, Problem};
 
@@ -70,7 +70,8 @@ fn least_square(problem: &Problem, t: usize, rests: &[Oscillation]) -> f64 {
     let degree = rests.iter().map(|rest| rest.rest.len() - 1).max().unwrap_or(1);
     let element = block(degree);
     let material = problem.material(problem.mesh.body[t]).without_initial();
-    let modes = element.modes(problem.mesh.corners(t), &material, &BodyForce::NONE);
+    let (section, corners) = (problem.section(), problem.mesh.corners(t));
+    let modes = section.modes(element, corners, &material);
     let count = element.tractions();
     let mut wanted = DVector::<f64>::zeros(count);
     for rest in rests {
@@ -79,7 +80,7 @@ fn least_square(problem: &Problem, t: usize, rests: &[Oscillation]) -> f64 {
             (0..2).for_each(|c| wanted[2 * (degree + 1) * side + 2 * k + c] = value[c]);
         }
     }
-    // Modes are orthonormal in energy, and their tractions are independent.
+    // Tractions of modes are independent.
     let tractions = DMatrix::from_row_slice(modes.parameters(), count, modes.traction());
     let normal = &tractions * tractions.transpose();
     let parameters = normal.cholesky().map(|factor| factor.solve(&(&tractions * &wanted)));
@@ -87,5 +88,10 @@ fn least_square(problem: &Problem, t: usize, rests: &[Oscillation]) -> f64 {
     // A rest is in balance but for rounding.
     let left = (tractions.transpose() * &parameters - &wanted).norm();
     let size = rests.iter().fold(0.0_f64, |m, rest| m.max(rest.size));
-    if left > BALANCED * size { f64::INFINITY } else { parameters.norm_squared() * (1.0 + BALANCED) }
+    if left > BALANCED * size {
+        return f64::INFINITY;
+    }
+    let mut stress = StressField::of_degrees([degree]);
+    section.stresses(element, corners, &BodyForce::NONE, &modes, parameters.as_slice(), stress.block_mut(0));
+    square_of_section(section, &stress, 0, corners, &material) * (1.0 + BALANCED)
 }

@@ -118,6 +118,14 @@ impl Section {
         }
     }
 
+    /// [`Self::compute`] into memory of its own, without a body force.
+    pub fn modes(self, element: &dyn EquilibriumElement, corners: Corners, material: &Material) -> Modes<'static> {
+        let layout = self.layout(element, corners);
+        let mut data = vec![0.0; layout.len()];
+        self.compute(element, corners, material, &BodyForce::NONE, layout.split(&mut data));
+        Modes::owned(layout, data)
+    }
+
     /// Nodal stresses of an orthonormal basis of the fields of the element without traction.
     pub fn unloaded(
         self,

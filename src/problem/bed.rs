@@ -48,7 +48,7 @@ pub struct EdgeWeight(Option<[f64; 2]>);
 
 impl EdgeWeight {
     /// On an edge of the mesh.
-    fn on(section: Section, mesh: &Triangulation, edge: usize) -> Self {
+    pub(super) fn on(section: Section, mesh: &Triangulation, edge: usize) -> Self {
         EdgeWeight::between(section, mesh, mesh.edges[edge].vertices)
     }
 
@@ -69,6 +69,11 @@ impl EdgeWeight {
     /// At a part of the way from the first end to the second.
     pub fn at(&self, s: f64) -> f64 {
         self.0.map_or(1.0, |[a, b]| a + s * (b - a))
+    }
+
+    /// The larger one of its ends.
+    pub fn largest(&self) -> f64 {
+        self.0.map_or(1.0, |[a, b]| a.max(b))
     }
 
     /// The mean along the edge.

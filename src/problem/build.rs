@@ -322,10 +322,6 @@ fn only_what_turns(scene: &Scene, section: Section) -> Result<(), ProblemError> 
             return refused(what, "give F_r as value + gradient · r, and a constant F_z");
         }
     }
-    if scene.tractions.iter().any(|traction| !traction.terms.is_empty()) {
-        let what = "a traction on a body of revolution has `terms`".to_string();
-        return refused(what, "leave `terms` out of axisymmetric scenes");
-    }
     Ok(())
 }
 

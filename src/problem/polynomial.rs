@@ -2,8 +2,12 @@
 //!
 //! The remainder on an edge is orthogonal to all affine functions on it, so it has neither a resultant nor a moment, and a stress on
 //! the one adjacent triangle balances it. The energy of that stress is part of the bracket ([`crate::bounds`]).
+//!
+//! On a body of revolution tractions are weighted with the distance r from the axis: r times the remainder is orthogonal to all affine
+//! functions.
 
-use super::{Note, Problem};
+use super::build::section;
+use super::{EdgeWeight, Note, Problem};
 use crate::element::polynomial::side;
 use crate::mesh::Triangulation;
 use crate::scene::{Load, Scene, Term, Traction};
@@ -13,7 +17,7 @@ use crate::scene::{Load, Scene, Term, Traction};
 pub struct Oscillation {
     /// The edge.
     pub edge: usize,
-    /// Bernstein coefficients of the rest, from the first vertex of the edge to its second.
+    /// Bernstein coefficients of the rest times the weight of the section, from the first vertex of the edge to its second.
     pub rest: Vec<[f64; 2]>,
     /// The largest coefficient of the traction that it was taken from: what rounding in it is relative to.
     pub size: f64,
@@ -32,13 +36,14 @@ impl Problem {
             edges
                 .map(|edge| {
                     let whole = along(&self.scene, &self.mesh, edge, &traction.terms);
-                    let nearest = nearest(&whole);
-                    let degree = whole.len() - 1;
-                    let linear: [Vec<f64>; 2] =
-                        [0, 1].map(|c| side::linear([nearest[0][c], nearest[1][c]], degree).collect());
-                    let size = whole.iter().flatten().fold(0.0_f64, |m, p| m.max(p.abs()));
-                    let rest = whole.iter().enumerate().map(|(k, p)| [0, 1].map(|c| p[c] - linear[c][k])).collect();
-                    Oscillation { edge, rest, size }
+                    let weight = EdgeWeight::on(self.section(), &self.mesh, edge);
+                    let nearest = nearest(&whole, &weight);
+                    let [x, y] = [0, 1].map(|c| {
+                        let linear = side::linear([nearest[0][c], nearest[1][c]], whole.len() - 1);
+                        weight.times(&whole.iter().zip(linear).map(|(p, linear)| p[c] - linear).collect::<Vec<_>>())
+                    });
+                    let size = whole.iter().flatten().fold(0.0_f64, |m, p| m.max(p.abs())) * weight.largest();
+                    Oscillation { edge, rest: x.into_iter().zip(y).map(|(x, y)| [x, y]).collect(), size }
                 })
                 .collect()
         };
@@ -58,7 +63,7 @@ pub(super) fn ends(scene: &Scene, mesh: &Triangulation, e: usize, traction: &Tra
     if traction.terms.is_empty() {
         return own;
     }
-    let more = nearest(&along(scene, mesh, e, &traction.terms));
+    let more = nearest(&along(scene, mesh, e, &traction.terms), &EdgeWeight::on(section(scene), mesh, e));
     [0, 1].map(|end| [0, 1].map(|c| own[end][c] + more[end][c]))
 }
 
@@ -91,11 +96,13 @@ fn product(f: &[f64], g: &[f64]) -> Vec<f64> {
     out
 }
 
-/// The ends of the nearest affine function.
-fn nearest(whole: &[[f64; 2]]) -> [[f64; 2]; 2] {
+/// The ends of the affine function that is nearest in the weighted mean square.
+fn nearest(whole: &[[f64; 2]], weight: &EdgeWeight) -> [[f64; 2]; 2] {
+    let [[a, b], [_, d]] = [0, 1].map(|i| [0, 1].map(|j| weight.product(1, i, j)));
     let along = |c: usize| {
         let own: Vec<f64> = whole.iter().map(|p| p[c]).collect();
-        side::from_moments(&side::moments(&own, 1))
+        let moments = side::moments(&weight.times(&own), 1);
+        [d * moments[0] - b * moments[1], a * moments[1] - b * moments[0]].map(|x| x / (a * d - b * b))
     };
     let [x, y] = [along(0), along(1)];
     [[x[0], y[0]], [x[1], y[1]]]
@@ -125,7 +132,8 @@ pub(super) fn remarks(problem: &Problem) -> Vec<Note> {
         for Oscillation { edge, rest, .. } in all.iter().filter(|rest| name.contains(&rest.edge)) {
             let length = problem.mesh.edge_frame(*edge).0;
             left += length * size(rest);
-            whole += length * size(&ends(&problem.scene, &problem.mesh, *edge, traction));
+            let ends = ends(&problem.scene, &problem.mesh, *edge, traction);
+            whole += length * size(&problem.weighted(*edge, ends));
         }
         let part = 100.0 * (left / (left + whole)).sqrt();
         let degree = traction.terms.iter().map(Term::degree).max().unwrap_or(1);

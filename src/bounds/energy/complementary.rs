@@ -9,7 +9,7 @@ use crate::bounds::springs::complementary_of_springs;
 use crate::dual::equilibrium::contact_traction;
 use crate::element::geometry::sub_corners;
 use crate::element::polynomial::side;
-use crate::element::{Material, Samples, StressField, contraction};
+use crate::element::{Material, Samples, Section, StressField, contraction};
 use crate::load::BodyForce;
 use crate::problem::{ContactPair, Problem};
 
@@ -77,14 +77,25 @@ pub fn initial_on(stress: &StressField, t: usize, material: &Material, corners: 
     [sum, size]
 }
 
+/// ‖σ‖²_a of the stress of triangle `t`, per unit thickness; without body forces in a body of revolution, and enclosed from above there.
+pub fn square_of_section(
+    section: Section,
+    stress: &StressField,
+    t: usize,
+    corners: [[f64; 2]; 3],
+    material: &Material,
+) -> f64 {
+    match section.revolved() {
+        None => square_on(stress, t, material, section.volume(corners) / 3.0),
+        Some(revolved) => revolved.square(stress, t, corners, material, &BodyForce::NONE)[0],
+    }
+}
+
 /// ‖σ‖²_a, per unit thickness; of a stress without body forces in a body of revolution.
 pub fn square(problem: &Problem, stress: &StressField) -> f64 {
     let mesh = &problem.mesh;
     let materials = problem.materials();
-    let of = |t: usize| match problem.section().revolved() {
-        None => square_on(stress, t, &materials[mesh.body[t]], mesh.area(t) / 3.0),
-        Some(revolved) => revolved.square(stress, t, mesh.corners(t), &materials[mesh.body[t]], &BodyForce::NONE)[0],
-    };
+    let of = |t: usize| square_of_section(problem.section(), stress, t, mesh.corners(t), &materials[mesh.body[t]]);
     let terms: Vec<f64> = (0..mesh.triangles.len()).into_par_iter().with_min_len(256).map(of).collect();
     terms.into_iter().collect::<Sum>().value()
 }

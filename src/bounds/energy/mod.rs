@@ -5,8 +5,8 @@ mod potential;
 mod work;
 
 pub use complementary::{
-    Complementary, complementary, complementary_of, excess_work, initial_on, square, square_on, support_work,
-    work_of_excess,
+    Complementary, complementary, complementary_of, excess_work, initial_on, square, square_of_section, square_on,
+    support_work, work_of_excess,
 };
 pub use potential::{Potential, initial_energy, initial_work, potential, potential_of, strain_of, strain_on};
 pub use work::{work, work_inside, work_of, work_on_edges};
