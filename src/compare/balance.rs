@@ -11,6 +11,7 @@
 //! solver's residual and the rounding of the displacements. A wrong modulus, load, thickness, support or
 //! contact leaves far more, however small its effect on the energy is.
 
+mod cones;
 mod higher;
 mod reported;
 mod rubbing;
@@ -109,6 +110,7 @@ impl Balance {
         let slides = slides.into_iter().zip(coupled).collect();
         let solution = Solution { problem, candidate, holds: &holds, slides };
         solution.slide_inside(&mut rest);
+        solution.press_and_slide_inside(&mut rest);
         match (&candidate.on_quadrilaterals, higher) {
             (None, Some(field)) => solution.take_inside(field, &mut rest),
             _ => solution.take_middles(&mut rest),
@@ -183,7 +185,7 @@ impl Solution<'_> {
         }
         let vertices = self.problem.mesh.points.len();
         let within = self.closed_within();
-        for pair in self.problem.pairs() {
+        for pair in self.problem.pairs().filter(|pair| !cones::follows_cone(pair)) {
             if !pair.direction.is_constant() {
                 self.take_turning(pair, within, rest);
                 continue;
@@ -256,16 +258,18 @@ impl Solution<'_> {
                 if jump < end.gap - within {
                     continue;
                 }
-                let mut row = DVector::<f64>::zeros(size);
-                for (v, sign) in [(Some(end.first), 1.0), (end.second, -1.0)] {
-                    let Some(v) = v else { continue };
-                    let d = self.holds.vertices[v].project(end.normal);
-                    row[slot[&v]] += sign * d[0];
-                    row[slot[&v] + 1] += sign * d[1];
-                }
-                let length = row.norm();
-                if length > HELD {
-                    rows.push(row / length);
+                for direction in self.directions(end) {
+                    let mut row = DVector::<f64>::zeros(size);
+                    for (v, sign) in [(Some(end.first), 1.0), (end.second, -1.0)] {
+                        let Some(v) = v else { continue };
+                        let d = self.holds.vertices[v].project(direction);
+                        row[slot[&v]] += sign * d[0];
+                        row[slot[&v] + 1] += sign * d[1];
+                    }
+                    let length = row.norm();
+                    if length > HELD {
+                        rows.push(row / length);
+                    }
                 }
             }
             let sticking = self.sticking(&group, &slot);

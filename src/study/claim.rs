@@ -37,11 +37,12 @@ pub fn claim(
     weak: bool,
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
-    if problem.has_polynomial_tractions() {
+    if is_of_polynomials(problem, &judged.candidate) {
         return Ok(not_held(problem, POLYNOMIAL));
     }
     let problem = &*problem.softened();
-    let solution = Solution::new(problem, &judged.candidate, judged.field.potential.stored())?;
+    let own = problem.bounded_by_contact_forces();
+    let solution = Solution::new(&own, &judged.candidate, judged.field.potential.stored())?;
     let solution = solution.within(Extent::of(problem, bracket)).with_weak_contact(weak);
     let mut checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     let diagnosis = checks
@@ -55,8 +56,15 @@ pub fn claim(
 }
 
 /// Why a field is not held against the loads of a polynomial traction.
-const POLYNOMIAL: &str = "A traction has `terms`: the nodal forces of another program are those of the polynomial, and of the nearest affine \
-                          tractions here. Leave out --solution: the energy of the field is held against the bracket all the same.";
+const POLYNOMIAL: &str = "A traction has `terms`, and the field is of degree 2 or more: the nodal forces of another program are those of the \
+                          polynomial, and of the nearest affine tractions here. Leave out --solution: the energy of the field is held \
+                          against the bracket all the same.";
+
+/// True if the nodal forces of a field of this degree are others for a polynomial than for its nearest affine tractions: what is left of
+/// it does no work on traces of degree 1.
+fn is_of_polynomials(problem: &Problem, candidate: &Candidate) -> bool {
+    problem.has_polynomial_tractions() && candidate.degree > 1
+}
 
 /// A claim that is held against nothing, for this reason.
 fn not_held(problem: &Problem, why: &str) -> Claim {
@@ -101,7 +109,7 @@ pub fn claim_before_contact(
                    on the mesh of `hypercircle mesh`, where they match.";
         return Ok(not_held(problem, why));
     }
-    if problem.has_polynomial_tractions() {
+    if is_of_polynomials(problem, own) {
         return Ok(not_held(problem, POLYNOMIAL));
     }
     // Which rule a program used on quadrilaterals shows once its contact forces are taken away.

@@ -50,23 +50,52 @@ const FIELDS: [(&str, Option<Explained>); 11] = [
     ("root", Some(("regularised", Some(2e-3)))),
 ];
 
+/// The same for Coulomb friction with the coefficient [`MU`].
+const COULOMB: [(&str, Option<Explained>); 9] = [
+    ("right", None),
+    ("frictionless", Some(("frictionless", Some(0.0)))),
+    ("sticks", Some(("sticks", None))),
+    ("along", Some(("friction-sign", Some(-1.0)))),
+    ("half", Some(("friction-bound", Some(0.5)))),
+    ("more", Some(("friction-bound", Some(1.3)))),
+    ("lags", Some(("friction-law", None))),
+    ("penalty", Some(("tangential-penalty", Some(30.0)))),
+    ("tanh", Some(("regularised", Some(2e-3)))),
+];
+
+const MU: &str = "0.15";
+
 /// Writes the scene and its fields; `false` where numpy or scipy is missing.
 fn prepared(folder: &Path, names: &[&str]) -> bool {
+    prepared_with(folder, names, None)
+}
+
+/// As [`prepared`], with Coulomb friction of this coefficient.
+fn prepared_with(folder: &Path, names: &[&str], mu: Option<&str>) -> bool {
     let python = std::env::var_os("HYPERCIRCLE_PYTHON").map_or("/usr/bin/python3".into(), PathBuf::from);
     if !Command::new(&python).args(["-c", "import numpy, scipy.sparse"]).output().is_ok_and(|o| o.status.success()) {
         eprintln!("skipped: {} has no numpy and scipy", python.display());
         return false;
     }
-    std::fs::write(folder.join("scene.toml"), SCENE).expect("writable");
+    let coulomb = |mu: &str| {
+        SCENE.replace("bound = [[0, 0.005], [1, 0.015]]", &format!("coefficient = {mu}")).replace("0.125", "0.25")
+    };
+    std::fs::write(folder.join("scene.toml"), mu.map_or(SCENE.to_string(), coulomb)).expect("writable");
     let problem = Problem::load(Scene::read(&folder.join("scene.toml")).expect("a scene")).expect("a mesh");
-    write_problem(&problem, &[], folder).expect("writable");
+    write_problem(&problem.where_friction_acts(), &[], folder).expect("writable");
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/displacement/friction.py");
     for degree in ["1", "2"] {
         let target = folder.join(format!("P{degree}"));
         std::fs::create_dir(&target).expect("writable");
         let mut command = Command::new(&python);
-        let output =
-            command.arg(&program).arg(folder.join("problem.json")).arg(target).arg(degree).args(names).output();
+        let output = command
+            .arg(&program)
+            .arg(folder.join("problem.json"))
+            .arg(target)
+            .arg(degree)
+            .args(mu)
+            .args(names)
+            .output();
         let output = output.expect("an interpreter");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
@@ -75,11 +104,20 @@ fn prepared(folder: &Path, names: &[&str]) -> bool {
 
 #[test]
 fn every_mistake_of_friction_is_found_and_named() {
+    every_mistake_is_named(&FIELDS, None);
+}
+
+#[test]
+fn every_mistake_of_coulomb_friction_is_found_and_named() {
+    every_mistake_is_named(&COULOMB, Some(MU));
+}
+
+fn every_mistake_is_named(fields: &[(&str, Option<Explained>)], mu: Option<&str>) {
     let folder = tempfile::tempdir().expect("a folder");
-    if !prepared(folder.path(), &FIELDS.map(|(name, _)| name)) {
+    if !prepared_with(folder.path(), &fields.iter().map(|(name, _)| *name).collect::<Vec<_>>(), mu) {
         return;
     }
-    for ((name, expected), degree) in FIELDS.into_iter().zip(["P1", "P2"].into_iter().cycle()) {
+    for (&(name, expected), degree) in fields.iter().zip(["P1", "P2"].into_iter().cycle()) {
         let (code, report) = certified(folder.path(), &format!("{degree}/{name}"), &[]);
         let Some((finding, number)) = expected else {
             assert_eq!(code, 0, "{degree} {name}: {}", report["verdict"]);

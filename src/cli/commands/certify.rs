@@ -14,7 +14,7 @@ use crate::cli::given::values::ValueOptions;
 use crate::cli::session::{DualRun, Session, refuse_unknown};
 use crate::cli::{CliError, Exit};
 use crate::compare::{Basis, Candidate, Comparison, compare};
-use crate::problem::{Note, Problem, follows_coulomb};
+use crate::problem::{Note, Problem};
 use crate::process::limit;
 use crate::study::{
     self, FieldError, ForeignField, GivenValue, Meant, quantity_checks, tolerance_check, value_checks, wanted_checks,
@@ -152,11 +152,6 @@ fn held(
     if certified.problem.has_friction() && args.contact.is_some() {
         let what = "--contact weak: the law of contact in the mean is not told apart from friction";
         return Err(CliError::stopped(Exit::BadInput, what, "leave --contact weak out, or `friction` of the scene"));
-    }
-    if follows_coulomb(&certified.problem.scene) && args.solution {
-        let what = "--solution: a discrete solution of Coulomb's law has limits of friction from its own reactions, and is not held to them";
-        let help = "leave --solution out: the bounds on the error of the field, for the friction bound that was found, are guaranteed";
-        return Err(CliError::stopped(Exit::BadInput, what, help));
     }
     let (candidate, rounded) = field.matched(&certified.problem, reading).map_err(refused)?;
 

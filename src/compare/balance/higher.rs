@@ -6,7 +6,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::Solution;
-use crate::bounds::{Nodes, Row, of_pair, sides};
+use super::cones::follows_cone;
+use crate::bounds::{Nodes, Row, sides};
+use crate::compare::contact::slides::rows_inside;
 use crate::element::PlainDisplacement;
 use crate::element::displacement::plain;
 use crate::element::polynomial::triangle;
@@ -47,26 +49,24 @@ pub(super) fn near(problem: &Problem, k: usize, node: usize) -> usize {
 }
 
 /// The rows between the ends of a pair, and the nodes inside its sides.
-struct Inside {
-    rows: Vec<Row>,
+pub(super) struct Inside {
+    pub(super) rows: Vec<Row>,
     nodes: Vec<usize>,
     first: usize,
 }
 
 impl Inside {
-    fn of(problem: &Problem, pair: &ContactPair, k: usize) -> Self {
+    pub(super) fn of(problem: &Problem, pair: &ContactPair, k: usize) -> Self {
         let sides = sides(pair, &problem.mesh, &nodes(problem, k));
-        let mut rows = of_pair(pair, &sides);
-        rows.pop();
         let inner = |side: &Option<Vec<usize>>| side.iter().flat_map(|s| s[1..k].to_vec()).collect::<Vec<_>>();
         let [own, other] = [inner(&sides[0]), inner(&sides[1])];
-        Inside { rows: rows.split_off(1.min(rows.len())), first: own.len(), nodes: [own, other].concat() }
+        Inside { rows: rows_inside(problem, pair, k), first: own.len(), nodes: [own, other].concat() }
     }
 
     /// A row as a vector over the nodes inside.
-    fn column(&self, row: &Row) -> DVector<f64> {
+    pub(super) fn column(&self, terms: &[(usize, [f64; 2])]) -> DVector<f64> {
         let mut column = DVector::zeros(2 * self.nodes.len());
-        for (node, factor) in row.terms() {
+        for (node, factor) in terms {
             if let Some(i) = self.nodes.iter().position(|n| n == node) {
                 column[2 * i] += factor[0];
                 column[2 * i + 1] += factor[1];
@@ -76,7 +76,7 @@ impl Inside {
     }
 
     /// −f at the nodes inside.
-    fn load(&self, forces: &[[f64; 2]]) -> DVector<f64> {
+    pub(super) fn load(&self, forces: &[[f64; 2]]) -> DVector<f64> {
         DVector::from_iterator(2 * self.nodes.len(), self.nodes.iter().flat_map(|&n| forces[n].map(|f| -f)))
     }
 }
@@ -102,10 +102,10 @@ impl Solution<'_> {
     /// Takes the forces of closed coefficients inside the pairs out of `rest`.
     pub(super) fn take_inside(&self, field: &PlainDisplacement, rest: &mut [[f64; 2]]) {
         let within = self.closed_within();
-        for pair in self.problem.pairs() {
+        for pair in self.problem.pairs().filter(|pair| !follows_cone(pair)) {
             let mut inside = Inside::of(self.problem, pair, field.degree());
             inside.rows.retain(|row| row.excess(field.values()) >= -within);
-            let columns: Vec<DVector<f64>> = inside.rows.iter().map(|row| inside.column(row)).collect();
+            let columns: Vec<DVector<f64>> = inside.rows.iter().map(|row| inside.column(row.terms())).collect();
             let unit: Vec<DVector<f64>> = columns.iter().map(|c| c / c.norm()).collect();
             let load = inside.load(rest);
             // Where the working set does not settle, the whole force is left over and the check fails in the open.
@@ -126,7 +126,7 @@ impl Solution<'_> {
     pub(super) fn asked_inside(&self, pair: &ContactPair, k: usize, left: &[[f64; 2]]) -> Vec<Asked> {
         let mut inside = Inside::of(self.problem, pair, k);
         inside.nodes.truncate(inside.first);
-        let columns: Vec<DVector<f64>> = inside.rows.iter().map(|row| inside.column(row)).collect();
+        let columns: Vec<DVector<f64>> = inside.rows.iter().map(|row| inside.column(row.terms())).collect();
         let reactions = multipliers(&columns, &inside.load(left));
         let own = |node: usize| inside.nodes.contains(&node) || pair.first.contains(&node);
         let moved = |row: &Row| {

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::DVector;
 
+use super::cones::follows_cone;
 use super::{Group, HELD, Solution, dot};
 use crate::bounds::{Hold, Holds};
 use crate::compare::contact::slides::{EndSlide, inside};
@@ -11,7 +12,7 @@ use crate::problem::{Interface, Problem};
 use crate::vector::cross;
 
 /// Directions whose cross product, or dot product, is smaller are parallel, or at right angles.
-const ALIGNED: f64 = 1e-9;
+pub(super) const ALIGNED: f64 = 1e-9;
 /// Sweeps of the coordinate descent that distributes forces over several directions.
 const SWEEPS: usize = 4000;
 
@@ -29,7 +30,8 @@ impl<'a> Solution<'a> {
         let pairs = |(index, interface): (usize, &'a Interface)| {
             interface.pairs.iter().enumerate().map(move |(k, pair)| (index, k, pair))
         };
-        for (index, k, pair) in self.problem.interfaces.iter().enumerate().flat_map(pairs) {
+        let all = self.problem.interfaces.iter().enumerate().flat_map(pairs);
+        for (index, k, pair) in all.filter(|(_, _, pair)| !follows_cone(pair)) {
             for (i, slide) in inside(self.problem, pair, degree).into_iter().enumerate() {
                 let force = slide.force(slide.row.excess_at(value), within).unwrap_or_else(|| {
                     // Where the direction turns the forces of several coefficients act on the same nodes: those reported are as good as any.
@@ -64,7 +66,7 @@ impl<'a> Solution<'a> {
     /// Takes the forces at vertices where the sides slide out of `rest`.
     pub(super) fn slide_at_vertices(&self, rest: &mut [[f64; 2]]) {
         let within = self.closed_within();
-        for (slide, _) in &self.slides {
+        for (slide, _) in self.slides.iter().filter(|(slide, _)| slide.coefficient.is_none()) {
             let jump = self.along(slide);
             if jump.abs() <= within {
                 continue;
@@ -83,7 +85,7 @@ impl<'a> Solution<'a> {
         let within = self.closed_within();
         let own = self.slides.iter().filter(|(slide, _)| group.vertices.contains(&slide.first));
         let row = |(slide, _): &(EndSlide, bool)| {
-            if self.along(slide).abs() > within {
+            if slide.coefficient.is_some() || self.along(slide).abs() > within {
                 return None;
             }
             let mut row = DVector::<f64>::zeros(2 * group.vertices.len());
@@ -101,11 +103,13 @@ impl<'a> Solution<'a> {
 
     /// True if the friction force at one place of a group depends on that at another, or on the pressure there.
     pub(super) fn couples(&self, group: &Group) -> bool {
-        self.slides.iter().any(|(slide, coupled)| *coupled && group.vertices.contains(&slide.first))
+        self.slides
+            .iter()
+            .any(|(slide, coupled)| *coupled && slide.coefficient.is_none() && group.vertices.contains(&slide.first))
     }
 
     /// The tangential jump j_t.
-    fn along(&self, slide: &EndSlide) -> f64 {
+    pub(super) fn along(&self, slide: &EndSlide) -> f64 {
         dot(self.value(slide.first), slide.tangent) - slide.second.map_or(0.0, |s| dot(self.value(s), slide.tangent))
     }
 }

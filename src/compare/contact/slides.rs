@@ -6,6 +6,8 @@
 //!   ∫ c e(u_h):e(φ) + Σ_r R_r b_r(φ) + Σ_i F_i d_i(φ) = ∫ F·φ + ∫ P·φ,  |F_i| ≤ c_i,  F_i = c_i sgn d_i(u_h) where d_i(u_h) ≠ 0.
 //!
 //! Where contacts along several directions meet in a vertex, its law couples them and is not checked for each alone.
+//!
+//! With Coulomb's law c_i = μ R_i, with the reaction R_i of the same place.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +27,7 @@ const PARALLEL: f64 = 1e-9;
 pub struct Slide {
     /// d_i as a function of the values at nodes.
     pub row: Row,
-    /// c_i, thickness included.
+    /// c_i, thickness included; one that means nothing with Coulomb's law.
     pub limit: f64,
 }
 
@@ -47,8 +49,10 @@ pub struct EndSlide {
     pub second: Option<usize>,
     /// t̂.
     pub tangent: [f64; 2],
-    /// c_i of all pairs that end there, thickness included.
+    /// c_i of all pairs that end there, thickness included; one that means nothing with Coulomb's law.
     pub limit: f64,
+    /// Coulomb's coefficient, where the displacement is held to it.
+    pub coefficient: Option<f64>,
 }
 
 /// The jumps along t̂ at vertices, those of pairs that meet in one direction together.
@@ -65,7 +69,10 @@ pub fn at_ends(problem: &Problem, degree: usize) -> Vec<EndSlide> {
                 let there = found.entry((interface, first, second)).or_default();
                 match there.iter_mut().find(|other| cross(other.tangent, tangent).abs() < PARALLEL) {
                     Some(other) => other.limit += limit,
-                    None => there.push(EndSlide { interface, first, second, tangent, limit }),
+                    None => {
+                        let coefficient = friction.coefficient;
+                        there.push(EndSlide { interface, first, second, tangent, limit, coefficient });
+                    }
                 }
             }
         }
@@ -83,17 +90,22 @@ fn degree_along(pair: &ContactPair, degree: usize) -> usize {
 pub fn inside(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<Slide> {
     let Some(friction) = pair.friction.filter(|_| degree > 1) else { return Vec::new() };
     let tangential = ContactPair { direction: friction.tangent, gap: [0.0; 2], bow: Bow::default(), ..*pair };
+    let limits = limits(problem, pair, degree_along(pair, degree)).into_iter().skip(1);
+    rows_inside(problem, &tangential, degree).into_iter().zip(limits).map(|(row, limit)| Slide { row, limit }).collect()
+}
+
+/// The coefficients of the jump between the ends of a pair, as functions of values for degree 2 and of Bernstein coefficients above.
+pub fn rows_inside(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<Row> {
     let vertices = problem.mesh.points.len();
-    let rows = match degree {
-        2 => bernstein(&tangential, vertices),
+    let mut rows = match degree {
+        2 => bernstein(pair, vertices),
         _ => {
             let nodes = Nodes::new(vertices, std::iter::repeat_n(degree, problem.mesh.edges.len()));
-            of_pair(&tangential, &sides(&tangential, &problem.mesh, &nodes))
+            of_pair(pair, &sides(pair, &problem.mesh, &nodes))
         }
     };
-    let along = degree_along(pair, degree);
-    let slides = rows.into_iter().zip(limits(problem, pair, along)).map(|(row, limit)| Slide { row, limit });
-    slides.skip(1).take(along - 1).collect()
+    rows.pop();
+    rows.split_off(1.min(rows.len()))
 }
 
 /// c_0, …, c_k of a pair, thickness included; none without friction.

@@ -2,7 +2,7 @@
 //!
 //! A method may impose it at its nodes, in Bernstein coefficients, or under the integral of τ̄|j_t|: along an edge whose jump keeps its
 //! sign these agree in coefficients of its degree, and where the sign changes the integral may ask for less. Each of them
-//! is accepted.
+//! is accepted. Coulomb's law bounds the friction of a place by its own contact force.
 
 use super::{SOLVER, Solution, Span};
 use crate::compare::Check;
@@ -58,7 +58,13 @@ impl Solution<'_> {
         let sticks = self.sticks_below();
         let count = self.sites.list.len();
         let (mut least, mut most, mut limit) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-        for span in self.sites.edges.iter().filter(|span| span.interface == interface) {
+        for (site, share) in self.limits_by_pressing(interface, ask) {
+            let against = -share * slip[site].signum();
+            limit[site] = share;
+            [least[site], most[site]] = if slip[site].abs() > sticks { [against; 2] } else { [-share, share] };
+        }
+        let given = self.sites.edges.iter().filter(|span| self.coefficient(span.interface).is_none());
+        for span in given.filter(|span| span.interface == interface) {
             let pair = &self.problem.interfaces[interface].pairs[span.pair];
             let shares = self.shares(span, pair, ask);
             let any = |sign: f64| shares.iter().any(|(site, _)| sign * slip[*site] > sticks);
@@ -72,7 +78,10 @@ impl Solution<'_> {
                 most[site] += high;
             }
         }
-        let own = (0..count).filter(|s| limit[*s] > 0.0 && self.sites.rubs_alone(*s));
+        let rubs = |s: &usize| {
+            limit[*s] > 0.0 || (self.coefficient(interface).is_some() && self.sites.list[*s].interface == interface)
+        };
+        let own = (0..count).filter(|s| rubs(s) && self.sites.rubs_alone(*s));
         let rubbed = |site: usize| Rubbed {
             site,
             force: force[site],
@@ -81,6 +90,23 @@ impl Solution<'_> {
             miss: (least[site] - force[site]).max(force[site] - most[site]).max(0.0),
         };
         own.map(rubbed).collect()
+    }
+
+    /// Coulomb's coefficient along contact `interface`, where the field is held to its own contact forces.
+    pub fn coefficient(&self, interface: usize) -> Option<f64> {
+        self.problem.interfaces[interface].pairs.iter().find_map(|pair| pair.friction?.coefficient)
+    }
+
+    /// Coulomb's coefficient times the forces that press the sides together at the places of contact `interface`; none where the bound of
+    /// friction is given.
+    fn limits_by_pressing(&self, interface: usize, ask: Ask) -> Vec<(usize, f64)> {
+        let Some(mu) = self.coefficient(interface) else { return Vec::new() };
+        let pressing = match ask {
+            Ask::AtNodes => self.pressing.clone(),
+            Ask::InCoefficients => self.sites.in_coefficients(&self.pressing, &self.excess).0,
+        };
+        let own = (0..pressing.len()).filter(|s| self.sites.list[*s].interface == interface);
+        own.map(|s| (s, mu * pressing[s].max(0.0))).collect()
     }
 
     /// Largest friction forces at the places of a pair, thickness included.
@@ -117,8 +143,10 @@ impl Solution<'_> {
             )
         });
         let part = if total > 0.0 { missed / total } else { missed };
+        let bound =
+            self.coefficient(interface).map_or("its bound".to_string(), |mu| format!("{mu} times the contact force"));
         let why = format!(
-            "Friction carries no more than its bound, and that much against the slip where the sides slide: the sum of the nodal forces \
+            "Friction carries no more than {bound}, and that much against the slip where the sides slide: the sum of the nodal forces \
              that are missing or too many, relative to all forces.{place}"
         );
         Some(self.claimed(name, part, self.of_forces(), why))

@@ -259,7 +259,12 @@ mod tests {
             gap: [0.0; 2],
             bow: Bow::default(),
             stiffness: None,
-            friction: rubs.then_some(Friction { bound: [1.0; 2], tangent, weight: EdgeWeight::default() }),
+            friction: rubs.then_some(Friction {
+                bound: [1.0; 2],
+                tangent,
+                weight: EdgeWeight::default(),
+                coefficient: None,
+            }),
         }
     }
 

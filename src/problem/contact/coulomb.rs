@@ -46,6 +46,19 @@ impl Problem {
         Cow::Owned(self.with_friction_bounds(&self.interfaces.iter().map(of).collect::<Vec<_>>()))
     }
 
+    /// This problem for a displacement whose friction is bounded by Coulomb's coefficient times its own contact forces.
+    pub fn bounded_by_contact_forces(&self) -> Cow<'_, Problem> {
+        let mut problem = self.where_friction_acts();
+        if let Cow::Owned(own) = &mut problem {
+            for index in 0..own.interfaces.len() {
+                let coefficient = own.coefficient(index);
+                let frictions = own.interfaces[index].pairs.iter_mut().filter_map(|pair| pair.friction.as_mut());
+                frictions.for_each(|friction| friction.coefficient = coefficient);
+            }
+        }
+        problem
+    }
+
     /// Friction of `pair` with a bound of zero, which problems do not have.
     pub fn without_resistance(&self, pair: &ContactPair) -> Friction {
         Friction::without_resistance(pair, (&self.mesh, self.section()))

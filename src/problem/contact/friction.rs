@@ -24,6 +24,8 @@ pub struct Friction {
     pub tangent: Direction,
     /// Weight of the points of the pair in integrals.
     pub weight: EdgeWeight,
+    /// Coulomb's coefficient where a displacement is held to its own contact forces: they bound its friction then, and `bound` is nothing.
+    pub coefficient: Option<f64>,
 }
 
 impl Friction {
@@ -40,7 +42,7 @@ impl Friction {
     /// Friction of `pair` with a bound of zero, which problems do not have.
     pub(super) fn without_resistance(pair: &ContactPair, (mesh, section): (&Triangulation, Section)) -> Self {
         let weight = EdgeWeight::of_pair(section, mesh, pair);
-        Friction { bound: [0.0; 2], tangent: tangent(pair, mesh), weight }
+        Friction { bound: [0.0; 2], tangent: tangent(pair, mesh), weight, coefficient: None }
     }
 
     /// Bernstein coefficients of degree `degree` of a function that is nowhere larger than the weighted τ̄, and nowhere negative: that itself

@@ -1,7 +1,7 @@
-"""Writes displacement fields of a scene with friction: `friction.py problem.json FOLDER DEGREE NAME...`.
+"""Writes displacement fields of a scene with friction: `friction.py problem.json FOLDER DEGREE [MU] NAME...`.
 
 `right` is the solution of a displacement method with its law at the nodes, `integrated` one whose law is under the integral; every other
-name is a mistake, or a method that only comes near to the law.
+name is a mistake, or a method that only comes near to the law. With MU the limits at nodes are MU times the contact forces there.
 """
 
 import json
@@ -80,6 +80,7 @@ class Rubbing(Model):
             pressure, along = np.zeros(count), pull.copy()
             pressure[closed], along[sticks] = np.split(force, [closed.sum()])
             now = pressure + scale * (self.normal @ u) > 0
+            self.pressure = pressure
             z = along + scale * (self.tangent @ u)
             if law == "along":
                 then = -np.sign(self.tangent @ u).astype(int)
@@ -115,7 +116,7 @@ class Rubbing(Model):
                 all_of_it[closed] = pressure
                 now = all_of_it + scale * (self.normal @ new) > 0
                 done = u is not None and np.abs(new - u).max() < 1e-12 * np.abs(new).max() and (now == closed).all()
-                u, closed = new, now
+                u, closed, self.pressure = new, now, all_of_it
                 if done:
                     break
         if not done:
@@ -149,6 +150,32 @@ def turned(model):
     return model.rubbed(limit=limit)
 
 
+def coulomb(model, mu, law="exact", times=1.0, solutions=200):
+    """Limits ``times`` ``mu`` as large as contact forces, from solution to solution; with few of them they lag behind."""
+    model.limit = np.zeros(len(model.places))
+    for _ in range(solutions):
+        u = model.rubbed(law)
+        limit = times * mu * np.maximum(model.pressure, 0.0)
+        if np.abs(limit - model.limit).max() <= 1e-13 * limit.max():
+            return u
+        model.limit = limit
+    if solutions > 100:
+        raise RuntimeError("the limits of friction do not settle")
+    return u
+
+
+COULOMB = {
+    "right": {},
+    "frictionless": {"law": "none"},
+    "sticks": {"law": "sticks"},
+    "along": {"law": "along"},
+    "half": {"times": 0.5},
+    "more": {"times": 1.3},
+    "lags": {"solutions": 2},
+    "penalty": {"law": penalty},
+    "tanh": {"law": tanh},
+}
+
 WAYS = {
     "right": lambda model: model.rubbed(),
     "frictionless": lambda model: model.rubbed("none"),
@@ -166,9 +193,13 @@ WAYS = {
 
 def main():
     problem, folder, degree = json.loads(pathlib.Path(sys.argv[1]).read_text()), pathlib.Path(sys.argv[2]), int(sys.argv[3])
-    for name in sys.argv[4:]:
+    names, mu = sys.argv[4:], None
+    if names and names[0] not in WAYS:
+        mu = float(names.pop(0))
+    for name in names:
         model = Rubbing(problem, degree)
-        (folder / f"{name}.vtk").write_text(model.vtk(WAYS[name](model)))
+        u = WAYS[name](model) if mu is None else coulomb(model, mu, **COULOMB[name])
+        (folder / f"{name}.vtk").write_text(model.vtk(u))
 
 
 main()

@@ -87,12 +87,13 @@ impl Along<'_> {
         let over: Vec<&Rubbed> = rubbed.iter().filter(|r| r.force.abs() > (1.0 + ABOVE) * r.limit).collect();
         if sliding.is_empty() {
             let most = over.iter().map(|r| r.force.abs() / r.limit).fold(0.0, f64::max);
+            let most_in_words =
+                if most.is_finite() { format!(", up to {} times", number(most)) } else { String::new() };
             let sentence = format!(
                 "contact {} sticks where it should slide: nowhere do its sides slide, and at {} the force along them is larger than friction \
-                 carries, up to {} times",
+                 carries{most_in_words}",
                 self.name,
                 counted(over.len(), "node"),
-                number(most)
             );
             return Some(self.found("sticks", Some(most), Some(1.0), sentence));
         }
@@ -141,14 +142,18 @@ impl Along<'_> {
             }
             () => "",
         };
+        let bound = if self.follows_coulomb() { "coefficient of friction" } else { "friction bound" };
         let sentence =
-            format!("the friction bound of contact {} is {} times what the scene says{how}", self.name, number(times));
+            format!("the {bound} of contact {} is {} times what the scene says{how}", self.name, number(times));
         Some(self.found("friction-bound", Some(times), Some(1.0), sentence))
     }
 
     /// The bound of the scene counted from the other end of the contact.
     fn turned_bound(&self, ask: Ask, sticks: f64) -> Option<Finding> {
         let rubbed = self.solution.rubbed_as(self.interface, ask);
+        if self.follows_coulomb() {
+            return None;
+        }
         let sliding: Vec<&Rubbed> = rubbed.iter().filter(|r| r.slip.abs() > sticks).collect();
         let pairs = &self.solution.problem.interfaces[self.interface].pairs;
         let (begin, end) = (pairs.first()?.arc[0], pairs.last()?.arc[1]);
@@ -183,7 +188,9 @@ impl Along<'_> {
         let at = |i: f64| high * 10f64.powf(BEYOND - decades * i / TRIED as f64);
         let mut best: Option<Fit> = None;
         for law in Smooth::ALL {
-            for rule in [None].into_iter().chain(RULES.map(Some)) {
+            // Pressures are known at nodes alone.
+            let rules = if self.follows_coulomb() { &[][..] } else { &RULES };
+            for rule in [None].into_iter().chain(rules.iter().copied().map(Some)) {
                 let miss = |parameter: f64| self.missed(rubbed, law, parameter, rule);
                 let coarse = (0..=TRIED).map(|i| (i as f64, miss(at(i as f64)))).min_by(|a, b| a.1.total_cmp(&b.1))?;
                 let (place, left) = sharpened(coarse, |i| miss(at(i)));
@@ -203,7 +210,7 @@ impl Along<'_> {
         match rule {
             None => {
                 for r in rubbed {
-                    let area = solution.problem.scene.thickness * solution.sites.list[r.site].weight;
+                    let area = self.area(r.site);
                     made[r.site] = law.force(solution.slip[r.site], r.limit / area, top, parameter) * area;
                 }
             }
@@ -227,9 +234,22 @@ impl Along<'_> {
         (miss / size).sqrt()
     }
 
+    fn follows_coulomb(&self) -> bool {
+        self.solution.coefficient(self.interface).is_some()
+    }
+
     fn largest_bound(&self) -> f64 {
         let pairs = &self.solution.problem.interfaces[self.interface].pairs;
+        if self.follows_coulomb() {
+            let rubbed = self.solution.rubbed_as(self.interface, Ask::AtNodes);
+            return rubbed.iter().map(|r| r.limit / self.area(r.site)).fold(0.0, f64::max);
+        }
         pairs.iter().filter_map(|pair| pair.friction).map(|friction| friction.largest()).fold(0.0, f64::max)
+    }
+
+    /// The area for which a place of contact stands.
+    fn area(&self, site: usize) -> f64 {
+        self.solution.problem.scene.thickness * self.solution.sites.list[site].weight
     }
 
     fn told(&self, fit: &Fit, rubbed: &[Rubbed]) -> Finding {
