@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use crate::errors::fault;
 use crate::kinematics::kinematics_named;
 use crate::own_element::{is_element, spanned};
+use hypercircle::scene::Kinematics;
 use hypercircle::workbench::stress::SolverElement;
 use hypercircle::workbench::{DisplacementElement, Material, Options, Order, Report, is_property};
 
@@ -57,6 +58,8 @@ fn called(
 /// (xx, yy, xy); subtriangle i has the corners (a_{i+1}, a_{i+2}, centroid), and nodes as `Solution.stress_points` has them. A method
 /// `particular(corners, body_force)` may return the field that balances a body force.
 ///
+/// With `kinematics = "axisymmetric"` points are (r, z), and K is that of the full turn about r = 0.
+///
 /// Raises `InputError` for a matrix, nodes or a material that are none.
 #[pyfunction]
 #[pyo3(signature = (element, nodes = None, young = None, poisson = None, kinematics = "plane-strain", thickness = 1.0, order = "interleaved",
@@ -104,6 +107,13 @@ pub fn workbench<'py>(
     let material = |young, poisson| Material::new(state, young, poisson, thickness).map_err(fault);
     let given = match (young, poisson) {
         (Some(young), Some(poisson)) => Some(material(young, poisson)?),
+        (None, None)
+            if state == Kinematics::Axisymmetric
+                && !element.is_callable()
+                && element.getattr_opt("stiffness")?.is_none() =>
+        {
+            return Err(fault("a matrix of a body of revolution is held against its material; give young and poisson"));
+        }
         (None, None) => None,
         _ => return Err(fault("give young and poisson, or neither")),
     };

@@ -2,6 +2,7 @@
 
 mod dilatation;
 mod enhanced;
+pub mod ring;
 
 use nalgebra::{DMatrix, Matrix3};
 
@@ -9,6 +10,7 @@ use super::displacement::DisplacementElement;
 use super::material::Material;
 use super::outline::Outline;
 use crate::element::polynomial::quadrature::{segment_rule, triangle_rule};
+use crate::scene::Kinematics;
 
 pub use dilatation::Split;
 pub(super) use dilatation::{one_sided, with_rows};
@@ -268,27 +270,37 @@ impl Family {
         of_jacobian: Slopes,
         of_gradients: Slopes,
     ) -> Result<Vec<Point>, String> {
-        let mut points = Vec::new();
-        for (at, weight) in self.rule(variant) {
-            let slopes = of_jacobian(at);
-            let entry = |c: usize, a: usize| nodes.iter().zip(&slopes).map(|(x, g)| x[c] * g[a]).sum::<f64>();
-            let jacobian = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
-            let det = det(&jacobian);
-            if det == 0.0 || !det.is_finite() {
-                return Err("the Jacobian vanishes at a quadrature point".into());
-            }
-            let gradients = of_gradients(at).iter().map(|g| gradient(&jacobian, g)).collect();
-            points.push(Point { at, weight, det: det.abs(), jacobian, gradients });
-        }
-        Ok(points)
+        points_at(nodes, self.rule(variant), of_jacobian, of_gradients)
     }
+}
 
+/// The points of a rule with Jacobians and gradients by given slopes.
+fn points_at(nodes: &[[f64; 2]], rule: Rule, of_jacobian: Slopes, of_gradients: Slopes) -> Result<Vec<Point>, String> {
+    let mut points = Vec::new();
+    for (at, weight) in rule {
+        let slopes = of_jacobian(at);
+        let entry = |c: usize, a: usize| nodes.iter().zip(&slopes).map(|(x, g)| x[c] * g[a]).sum::<f64>();
+        let jacobian = [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]];
+        let det = det(&jacobian);
+        if det == 0.0 || !det.is_finite() {
+            return Err("the Jacobian vanishes at a quadrature point".into());
+        }
+        let gradients = of_gradients(at).iter().map(|g| gradient(&jacobian, g)).collect();
+        points.push(Point { at, weight, det: det.abs(), jacobian, gradients });
+    }
+    Ok(points)
+}
+
+impl Family {
     /// The element with its formula, on the reference shape.
     ///
     /// # Errors
     /// As [`DisplacementElement::of_formula`].
     pub fn element(self, name: &str, material: Material, variant: Variant) -> Result<DisplacementElement, String> {
-        let formula = move |nodes: &[[f64; 2]], m: &Material| self.stiffness(nodes, &m.hooke(), m.thickness, variant);
+        let formula = move |nodes: &[[f64; 2]], m: &Material| match m.kinematics {
+            Kinematics::Axisymmetric => ring::stiffness(self, nodes, &m.hooke_of_rings(), variant),
+            _ => self.stiffness(nodes, &m.hooke(), m.thickness, variant),
+        };
         DisplacementElement::of_formula(name, self.nodes(), material, formula)
     }
 }

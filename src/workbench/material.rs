@@ -1,17 +1,17 @@
 //! Materials of elements.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Matrix4};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::element;
 use crate::scene::Kinematics;
 
-/// An isotropic material in the plane.
+/// An isotropic material in the plane or of a body of revolution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(into = "Written")]
 pub struct Material {
-    /// Plane strain or plane stress.
+    /// Plane strain, plane stress, or a body of revolution.
     pub kinematics: Kinematics,
     /// Young's modulus E.
     pub young: f64,
@@ -29,7 +29,7 @@ impl Material {
     /// The material, if there is such a one.
     ///
     /// # Errors
-    /// A constant is out of range, or the kinematics are axisymmetric.
+    /// A constant is out of range, or a body of revolution has a thickness.
     pub fn new(kinematics: Kinematics, young: f64, poisson: f64, thickness: f64) -> Result<Self, String> {
         let above_zero = |x: f64| x > 0.0 && x.is_finite();
         if !above_zero(young) {
@@ -41,10 +41,10 @@ impl Material {
         if !above_zero(thickness) {
             return Err(format!("the thickness is {thickness}; it is a finite number above zero"));
         }
-        if kinematics == Kinematics::Axisymmetric {
-            return Err(
-                "elements of bodies of revolution are not examined; use plane-strain or plane-stress".to_string()
-            );
+        if kinematics == Kinematics::Axisymmetric && thickness != 1.0 {
+            let text =
+                format!("the thickness is {thickness}; a body of revolution has none: K is that of the full turn");
+            return Err(text);
         }
         Ok(Material { kinematics, young, poisson, thickness })
     }
@@ -59,6 +59,23 @@ impl Material {
         let c = self.compliance();
         let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.5]].map(|e| c.stress(e).into());
         Matrix3::from_columns(&columns)
+    }
+
+    /// Hooke's law of a body of revolution: (σ_rr, σ_zz, σ_tt, σ_rz) = D (ε_rr, ε_zz, ε_tt, γ_rz), γ_rz = 2 ε_rz.
+    pub fn hooke_of_rings(&self) -> Matrix4<f64> {
+        let law = self.compliance().revolved();
+        let unit = |i: usize| {
+            std::array::from_fn(|j| {
+                if i != j {
+                    0.0
+                } else if i == 3 {
+                    0.5
+                } else {
+                    1.0
+                }
+            })
+        };
+        Matrix4::from_columns(&[0, 1, 2, 3].map(|i| law.stress(unit(i)).into()))
     }
 
     /// The material with another ν.
@@ -80,7 +97,7 @@ impl Material {
 #[derive(Serialize, JsonSchema)]
 #[schemars(rename = "Material")]
 pub(super) struct Written {
-    /// `plane-strain` or `plane-stress`.
+    /// `plane-strain`, `plane-stress` or `axisymmetric`.
     kinematics: &'static str,
     /// Young's modulus.
     young: f64,

@@ -17,6 +17,7 @@ mod page;
 mod picture;
 pub mod read;
 mod report;
+mod ring;
 mod scene;
 mod shipped;
 pub mod stress;

@@ -12,6 +12,7 @@ use super::displacement::{self, DisplacementElement};
 use super::finding::{Finding, Property};
 use super::material::{Material, Written};
 use super::page;
+use super::ring;
 use super::stress::{self, StressElement};
 use crate::report::folder;
 use crate::report::text::number::{clean, optional};
@@ -41,7 +42,8 @@ impl Options {
 
 /// True if a name is that of a property.
 pub fn is_property(name: &str) -> bool {
-    let mut names = displacement::PROPERTIES.iter().map(|p| p.name).chain(stress::PROPERTIES.iter().map(|p| p.name));
+    let of_displacements = displacement::PROPERTIES.iter().chain(ring::PROPERTIES).map(|p| p.name);
+    let mut names = of_displacements.chain(stress::PROPERTIES.iter().map(|p| p.name));
     names.any(|known| known == name)
 }
 
@@ -99,19 +101,21 @@ impl Report {
     /// Looks at every property of a displacement element.
     pub fn of_displacement(e: &DisplacementElement, options: &Options) -> Self {
         // Incompatible modes and selective integration are no mistake, and their energies may lie below the bound.
-        let may_be_below = known(e).is_some_and(|r| !r.is_conforming());
+        let may_be_below = !e.is_ring() && known(e).is_some_and(|r| !r.is_conforming());
         let claims = |p: &Property<DisplacementElement>| {
             let is_said = options.claimed.iter().any(|name| name == p.name);
             options.claims(p) && (is_said || !(may_be_below && p.name == displacement::BOUND))
         };
         let find = |p: &Property<DisplacementElement>| p.find(e, claims(p));
-        let findings: Vec<Finding> = displacement::PROPERTIES.iter().map(find).collect();
+        let properties = if e.is_ring() { ring::PROPERTIES } else { displacement::PROPERTIES };
+        let diagnosis = if e.is_ring() { ring::diagnose(e) } else { diagnose(e) };
+        let findings: Vec<Finding> = properties.iter().map(find).collect();
         Report {
             nodes: e.nodes.clone(),
             material: e.material,
             hint: hint(e, &findings),
             untold: untold(e),
-            ..Self::new(&e.name, "displacement", findings, diagnose(e))
+            ..Self::new(&e.name, "displacement", findings, diagnosis)
         }
     }
 

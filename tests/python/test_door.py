@@ -154,6 +154,53 @@ def test_fields_of_scikit_fem_are_taken(hypercircle, tmp_path):
         hypercircle.field(skfem.Basis(mesh, skfem.ElementTriP1()), np.zeros(len(mesh.p.T)))
 
 
+@pytest.mark.parametrize("kinematics", ["plane-strain", "axisymmetric"])
+def test_claims_of_degree_one_hold_beside_polynomial_tractions(hypercircle, tmp_path, kinematics):
+    """What is left of a polynomial beyond its nearest affine traction does no work on linear traces, weighted with r or not."""
+    import skfem
+    from skfem.helpers import ddot, sym_grad
+    from skfem.models.elasticity import lame_parameters
+
+    file = tmp_path / "scene.toml"
+    file.write_text(f"""
+model = {{ kinematics = "{kinematics}" }}
+geometry.size = 0.25
+bodies.block = {{ young = 2.0, poisson = 0.25 }}
+supports = [{{ on = "foot", type = "clamped" }}]
+tractions = [{{ on = "top", value = [0, -1], terms = [{{ powers = [3, 0], value = [0.5, 2.0] }}] }}]
+[[geometry.polygons]]
+body = "block"
+points = [[0.5, 0], [1.5, 0], [1.5, 1], [0.5, 1]]
+edges = ["foot", "", "top", ""]
+""")
+    scene = hypercircle.Scene(file)
+    problem = scene.problem()
+    mesh = skfem.MeshTri(np.ascontiguousarray(problem["points"].T), np.ascontiguousarray(problem["triangles"].T))
+    lame, shear = lame_parameters(2.0, 0.25)
+    turned = kinematics == "axisymmetric"
+
+    @skfem.BilinearForm
+    def stiffness(u, v, w):
+        r, weight = w.x[0], w.x[0] if turned else 1.0
+        trace = lambda u: u.grad[0, 0] + u.grad[1, 1] + turned * u.value[0] / r
+        hoop = turned * u.value[0] * v.value[0] / r**2
+        return weight * (2 * shear * (ddot(sym_grad(u), sym_grad(v)) + hoop) + lame * trace(u) * trace(v))
+
+    def solved(element, scale):
+        basis = skfem.Basis(mesh, skfem.ElementVector(element), intorder=4)
+        top = skfem.FacetBasis(mesh, skfem.ElementVector(element), facets=mesh.facets_satisfying(lambda x: x[1] > 1 - 1e-9), intorder=8)
+        form = lambda v, w: (0.5 * w.x[0] ** 3 * v[0] + (2.0 * w.x[0] ** 3 - scale) * v[1]) * (w.x[0] if turned else 1.0)
+        held = basis.get_dofs(lambda x: x[1] < 1e-9)
+        u = skfem.solve(*skfem.condense(stiffness.assemble(basis), skfem.LinearForm(form).assemble(top), D=held))
+        return hypercircle.field(basis, u)
+
+    right = scene.certify(*solved(skfem.ElementTriP1(), 1.0), solution=True)
+    assert right.passed, right.verdict
+    assert not scene.certify(*solved(skfem.ElementTriP1(), 1.05), solution=True).passed
+    quadratic = scene.certify(*solved(skfem.ElementTriP2(), 1.0), solution=True)
+    assert [check for check in quadratic.checks if "`terms`" in check.why]
+
+
 def test_functions_of_dolfinx_are_taken(hypercircle, tmp_path):
     """Three lines after a solve in FEniCSx: here the function is that of a known displacement."""
     dolfinx = pytest.importorskip("dolfinx")

@@ -127,3 +127,40 @@ def test_what_is_no_element_is_an_input_error(hypercircle):
         hypercircle.workbench(linear, nodes, waive=["beauty"])
     with pytest.raises(hypercircle.InputError, match="young and poisson"):
         hypercircle.workbench(np.eye(6), nodes, young=1.0)
+
+
+@pytest.mark.parametrize("name", ELEMENTS)
+@pytest.mark.parametrize("order", [2, 4])
+def test_rings_of_scikit_fem_pass(hypercircle, name, order):
+    """K of the full turn, by the rules of scikit-fem."""
+    from skfem.helpers import ddot, sym_grad
+
+    lame, shear = lame_parameters(3.0, 0.25)
+    corners = CORNERS + [0.4, 0.0]
+    basis = basis_of(name, corners).with_element(skfem.ElementVector(ELEMENTS[name][1]()))
+    basis = skfem.Basis(basis.mesh, basis.elem, intorder=order)
+
+    def form(turn, hoop):
+        @skfem.BilinearForm
+        def assembled(u, v, w):
+            r = w.x[0]
+            trace = lambda u: u.grad[0, 0] + u.grad[1, 1] + hoop * u.value[0] / r
+            own = 2 * shear * (ddot(sym_grad(u), sym_grad(v)) + hoop * u.value[0] * v.value[0] / r**2)
+            return (own + lame * trace(u) * trace(v)) * turn * r
+
+        return assembled
+
+    places = basis.doflocs.T
+    numbers = {}
+    for i, place in enumerate(places):
+        numbers.setdefault(tuple(np.round(place, 9)), []).append(i)
+    order_of = np.concatenate(list(numbers.values()))
+    nodes = np.array(list(numbers))
+    for turn, hoop, cause in [(2 * np.pi, 1, None), (1.0, 1, "per-radian"), (2 * np.pi, 0, "hoop-left-out")]:
+        k = form(turn, hoop).assemble(basis).toarray()[np.ix_(order_of, order_of)]
+        report = hypercircle.workbench(
+            k, nodes, young=3.0, poisson=0.25, kinematics="axisymmetric", claim=["reference"]
+        )
+        found = report["diagnosis"] and report["diagnosis"]["cause"]
+        assert found == cause, report["diagnosis"]
+        assert report["passed"] == (cause is None), report["verdict"]

@@ -36,7 +36,7 @@ pub struct Args {
     /// How the unknowns of the matrix are numbered
     #[arg(long, value_enum, default_value_t = Order::Interleaved, requires = "matrix")]
     pub order: Order,
-    /// Plane state of the material
+    /// Plane state of the material, or a body of revolution about x = 0, with K of the full turn
     #[arg(long, value_enum, requires = "matrix")]
     pub kinematics: Option<Kinematics>,
     /// Young's modulus
@@ -190,17 +190,23 @@ fn material(args: &Args, arrays: &BTreeMap<String, Array>) -> Result<Option<Mate
     let kinematics = match (args.kinematics, arrays.get("kinematics")) {
         (None, Some(Array::Text(text))) => Some(
             Kinematics::named(text)
-                .ok_or_else(|| format!("kinematics is '{text}'; it is plane-strain or plane-stress"))?,
+                .ok_or_else(|| format!("kinematics is '{text}'; it is plane-strain, plane-stress or axisymmetric"))?,
         ),
         (given, _) => given,
     };
     let (young, poisson) = match (young, poisson) {
         (Some(young), Some(poisson)) => (young, poisson),
+        (None, None) if kinematics == Some(Kinematics::Axisymmetric) => {
+            return Err(
+                "a matrix of a body of revolution is held against its material; say --young and --poisson".into()
+            );
+        }
         (None, None) => return Ok(None),
         (Some(_), None) => return Err("E is given without ν; say both, or neither".into()),
         (None, Some(_)) => return Err("ν is given without E; say both, or neither".into()),
     };
-    let kinematics =
-        kinematics.ok_or("E and ν are given without the plane state; say --kinematics plane-strain or plane-stress")?;
+    let kinematics = kinematics.ok_or(
+        "E and ν are given without the plane state; say --kinematics plane-strain, plane-stress or axisymmetric",
+    )?;
     Material::new(kinematics, young, poisson, thickness).map(Some)
 }

@@ -15,7 +15,8 @@ pub fn untold(e: &DisplacementElement) -> Option<String> {
     }
     let always = "A matrix of one shape cannot tell whether its formula is right on other shapes, sizes and directions, in other materials and on \
                   meshes: a right matrix is no right formula";
-    let list = Reference::all(e).map(|all| unseen(e, &all[0])).unwrap_or_default();
+    let of_plane = || Reference::all(e).map(|all| unseen(e, &all[0])).unwrap_or_default();
+    let list = if e.is_ring() { Vec::new() } else { of_plane() };
     let here = match list.as_slice() {
         [] => String::new(),
         list => format!(". On this shape it cannot tell {}", list.join("; ")),

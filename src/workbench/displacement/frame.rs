@@ -78,7 +78,8 @@ fn moved(e: &DisplacementElement, what: &str, q: Turn, factor: f64) -> Result<Me
 fn renumbered(e: &DisplacementElement) -> Result<Measured, Fault> {
     e.formula()?;
     let (layout, material, corners) = (e.layout()?, e.material()?, e.outline.corners.len());
-    let at = shapes::irregular(corners);
+    // Rings lie beside their axis.
+    let at: Vec<[f64; 2]> = shapes::irregular(corners).into_iter().map(|[x, y]| [x + 1.0, y]).collect();
     let begun: Vec<[f64; 2]> = (0..corners).map(|k| at[(k + 1) % corners]).collect();
     let (nodes, there) = (nodes_on(&layout, &at), nodes_on(&layout, &begun));
     let from = places(&there, &nodes)?;
@@ -90,7 +91,7 @@ fn renumbered(e: &DisplacementElement) -> Result<Measured, Fault> {
 ///
 /// # Errors
 /// A point is not among them.
-fn places(there: &[[f64; 2]], nodes: &[[f64; 2]]) -> Result<Vec<usize>, Fault> {
+pub(in crate::workbench) fn places(there: &[[f64; 2]], nodes: &[[f64; 2]]) -> Result<Vec<usize>, Fault> {
     let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-9;
     let found: Option<Vec<usize>> = there.iter().map(|x| nodes.iter().position(|y| near(x, y))).collect();
     found.ok_or_else(|| Fault::NotMade("the nodes do not lie alike on all sides".into()))

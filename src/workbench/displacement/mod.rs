@@ -2,8 +2,8 @@
 
 mod condition;
 mod convergence;
-mod definite;
-mod frame;
+pub(super) mod definite;
+pub(super) mod frame;
 mod incompressible;
 mod mesh;
 mod patch;
@@ -12,22 +12,24 @@ mod reference;
 mod rigid;
 mod shapes;
 mod skyline;
-mod symmetry;
+pub(super) mod symmetry;
 
 use std::cell::OnceCell;
 
 use nalgebra::DMatrix;
 
+pub(super) use frame::places;
 pub(super) use patch::{hooke_seen, material_words};
 pub(super) use rank::{silent_motions, spurious};
 pub(super) use rigid::{motions, within};
-pub(super) use shapes::{Shape, sweep};
+pub(super) use shapes::{Shape, irregular, sweep};
 
 use self::convergence::Level;
 use super::finding::{Fault, Property};
 use super::material::Material;
 use super::outline::Outline;
 use super::scene::Exact;
+use crate::scene::Kinematics;
 
 /// Properties checked on a displacement element, in the order of a report: one file each, one line each.
 pub const PROPERTIES: &[Property<DisplacementElement>] = &[
@@ -129,6 +131,7 @@ impl DisplacementElement {
         material: Option<Material>,
     ) -> Result<Self, String> {
         let outline = outline_of(&nodes)?;
+        beside_axis(&nodes, material)?;
         let matrix = ordered(matrix, nodes.len(), order)?;
         Ok(DisplacementElement {
             name: name.into(),
@@ -153,6 +156,7 @@ impl DisplacementElement {
         formula: impl Fn(&[[f64; 2]], &Material) -> Result<DMatrix<f64>, String> + Send + 'static,
     ) -> Result<Self, String> {
         let outline = outline_of(&nodes)?;
+        beside_axis(&nodes, Some(material))?;
         let matrix = ordered(&formula(&nodes, &material)?, nodes.len(), Order::Interleaved)?;
         Ok(DisplacementElement {
             name: name.into(),
@@ -169,6 +173,11 @@ impl DisplacementElement {
     /// Sets the precision of the entries, relative to the largest one.
     pub fn with_precision(self, precision: f64) -> Self {
         DisplacementElement { precision, ..self }
+    }
+
+    /// True if it is one of a body of revolution.
+    pub fn is_ring(&self) -> bool {
+        self.material.is_some_and(|material| material.kinematics == Kinematics::Axisymmetric)
     }
 
     /// True if it has a formula, so that it can be examined on other shapes.
@@ -218,7 +227,7 @@ impl DisplacementElement {
     ///
     /// # Errors
     /// It is not known.
-    fn material(&self) -> Result<Material, Fault> {
+    pub(super) fn material(&self) -> Result<Material, Fault> {
         self.material.ok_or_else(|| Fault::NotMade("no material is given; say E and ν".into()))
     }
 
@@ -226,7 +235,7 @@ impl DisplacementElement {
     ///
     /// # Errors
     /// There is one matrix only.
-    fn formula(&self) -> Result<&Formula, Fault> {
+    pub(super) fn formula(&self) -> Result<&Formula, Fault> {
         let text = "one matrix says nothing about other shapes, materials and meshes; give the formula, from Python";
         self.formula.as_deref().ok_or_else(|| Fault::NotMade(text.into()))
     }
@@ -235,7 +244,7 @@ impl DisplacementElement {
     ///
     /// # Errors
     /// There is no formula, or it gives no matrix.
-    fn stiffness(&self, nodes: &[[f64; 2]], material: &Material) -> Result<DMatrix<f64>, Fault> {
+    pub(super) fn stiffness(&self, nodes: &[[f64; 2]], material: &Material) -> Result<DMatrix<f64>, Fault> {
         (self.formula()?)(nodes, material)
             .and_then(|k| ordered(&k, nodes.len(), Order::Interleaved))
             .map_err(|e| Fault::Failed(format!("the formula gives no matrix for nodes {nodes:?}: {e}")))
@@ -245,19 +254,19 @@ impl DisplacementElement {
     ///
     /// # Errors
     /// It is neither a triangle nor a quadrilateral.
-    fn layout(&self) -> Result<DMatrix<f64>, Fault> {
+    pub(super) fn layout(&self) -> Result<DMatrix<f64>, Fault> {
         let text = || Fault::NotMade(format!("it has {} corners, not three or four", self.outline.corners.len()));
         self.outline.weights(&self.nodes).ok_or_else(text)
     }
 
     /// Scale of the products of K with vectors of length one, to tell which are zero: the largest entry of K.
-    fn size(&self) -> f64 {
+    pub(super) fn size(&self) -> f64 {
         self.matrix.amax().max(f64::MIN_POSITIVE)
     }
 }
 
 /// Nodes that lie as `layout` says between these corners.
-fn nodes_on(layout: &DMatrix<f64>, corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
+pub(super) fn nodes_on(layout: &DMatrix<f64>, corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let at = |n: usize, c: usize| corners.iter().enumerate().map(|(k, p)| layout[(n, k)] * p[c]).sum();
     (0..layout.nrows()).map(|n| [at(n, 0), at(n, 1)]).collect()
 }
@@ -275,6 +284,17 @@ fn outline_of(nodes: &[[f64; 2]]) -> Result<Outline, String> {
         }
     }
     Outline::of(nodes).ok_or_else(|| "the nodes lie on one line and enclose no area".into())
+}
+
+/// Refuses nodes beyond the axis of a body of revolution.
+fn beside_axis(nodes: &[[f64; 2]], material: Option<Material>) -> Result<(), String> {
+    if material.is_none_or(|material| material.kinematics != Kinematics::Axisymmetric) {
+        return Ok(());
+    }
+    match nodes.iter().position(|x| x[0] < 0.0) {
+        Some(n) => Err(format!("node {n} has r = {}: a body of revolution lies at r ≥ 0", nodes[n][0])),
+        None => Ok(()),
+    }
 }
 
 /// The matrix with two rows a node.

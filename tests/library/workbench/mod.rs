@@ -1,6 +1,7 @@
 //! The element workbench: what comes with the program is what it claims, and what is broken on purpose is named.
 
 mod matrices;
+mod rings;
 mod stresses;
 
 use std::sync::LazyLock;

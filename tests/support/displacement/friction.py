@@ -72,7 +72,10 @@ class Rubbing(Model):
             return self._smooth(law, closed, scale)
         if law == "along":
             state = -np.sign(self.tangent @ self.rubbed("none").ravel()).astype(int)
-        for _ in range(300):
+        for step in range(300):
+            # What goes round in circles settles with smaller steps.
+            if step % 60 == 59:
+                scale *= 0.1
             sticks = np.ones(count, bool) if law == "sticks" else state == 0
             rows = sp.vstack([self.normal[closed], self.tangent[sticks]])
             pull = np.where(sticks, 0.0, limit * state)
