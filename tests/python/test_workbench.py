@@ -144,8 +144,8 @@ def test_rings_of_scikit_fem_pass(hypercircle, name, order):
         @skfem.BilinearForm
         def assembled(u, v, w):
             r = w.x[0]
-            trace = lambda u: u.grad[0, 0] + u.grad[1, 1] + hoop * u.value[0] / r
-            own = 2 * shear * (ddot(sym_grad(u), sym_grad(v)) + hoop * u.value[0] * v.value[0] / r**2)
+            trace = lambda u: u.grad[0, 0] + u.grad[1, 1] + hoop * u[0] / r
+            own = 2 * shear * (ddot(sym_grad(u), sym_grad(v)) + hoop * u[0] * v[0] / r**2)
             return (own + lame * trace(u) * trace(v)) * turn * r
 
         return assembled
