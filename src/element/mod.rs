@@ -38,7 +38,8 @@ pub use interpolate::{interpolant, parameters_from_tractions, side_projection};
 pub use material::{Material, Roots, Stiffness};
 pub use polynomial::samples::Samples;
 pub use polynomial::side_values::{SideValues, parts, starts};
-pub use section::{Revolved, Section};
+pub use revolved::Revolved;
+pub use section::Section;
 pub use spanned::Spanned;
 
 use std::borrow::Cow;

@@ -15,6 +15,7 @@
 //! Energies are integrals of rational functions: by quadrature for the basis, which decides about nothing but the choice of the
 //! fields, and enclosed (`rule.rs`) for everything that is a bound.
 
+mod body;
 mod energies;
 mod fields;
 mod householder;
@@ -25,6 +26,7 @@ mod rule;
 mod sampled;
 mod stress;
 
+pub use body::Revolved;
 pub use initial::{Held, Motion};
 pub use law::{Law, Tensor, work};
 pub use modes::Ring;
