@@ -103,6 +103,14 @@ fn gradient(j: &[[f64; 2]; 2], g: &[f64; 2]) -> [f64; 2] {
     [(j[1][1] * g[0] - j[1][0] * g[1]) / det, (j[0][0] * g[1] - j[0][1] * g[0]) / det]
 }
 
+/// A matrix of a family, numbered as an element is whose node `order[i]` is node i of the family.
+pub(super) fn placed(own: &DMatrix<f64>, order: &[usize]) -> DMatrix<f64> {
+    let mut at = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(i, &n)| at[n] = i);
+    let place = |i: usize| 2 * at[i / 2] + i % 2;
+    DMatrix::from_fn(own.nrows(), own.ncols(), |i, j| own[(place(i), place(j))])
+}
+
 /// Barycentric or bilinear place, and weight.
 type Rule = Vec<([f64; 2], f64)>;
 

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Matrix3};
 
 use crate::workbench::displacement::{self, DisplacementElement};
-use crate::workbench::formulas::{Correction, Family, Point, Split, Variant};
+use crate::workbench::formulas::{self, Correction, Family, Point, Split, Variant};
 
 /// The matrix of the isoparametric element of the same nodes and material, numbered as the element is.
 pub struct Reference {
@@ -137,10 +137,7 @@ impl Reference {
 
     /// A matrix of the family, numbered as the element is.
     pub(super) fn placed(&self, own: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut at = vec![0; self.order.len()];
-        self.order.iter().enumerate().for_each(|(i, &n)| at[n] = i);
-        let place = |i: usize| 2 * at[i / 2] + i % 2;
-        DMatrix::from_fn(own.nrows(), own.ncols(), |i, j| own[(place(i), place(j))])
+        formulas::placed(own, &self.order)
     }
 
     /// Rows (x, y) in the order of the element, brought into that of the family.

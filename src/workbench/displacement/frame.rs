@@ -33,7 +33,7 @@ pub const RENUMBERING: Property<DisplacementElement> = Property {
     measure: renumbered,
 };
 
-type Turn = [[f64; 2]; 2];
+pub(in crate::workbench) type Turn = [[f64; 2]; 2];
 
 fn turn(angle: f64) -> Turn {
     let (s, c) = angle.sin_cos();
@@ -91,20 +91,30 @@ fn renumbered(e: &DisplacementElement) -> Result<Measured, Fault> {
 ///
 /// # Errors
 /// A point is not among them.
-pub(in crate::workbench) fn places(there: &[[f64; 2]], nodes: &[[f64; 2]]) -> Result<Vec<usize>, Fault> {
+fn places(there: &[[f64; 2]], nodes: &[[f64; 2]]) -> Result<Vec<usize>, Fault> {
     let near = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-9;
     let found: Option<Vec<usize>> = there.iter().map(|x| nodes.iter().position(|y| near(x, y))).collect();
     found.ok_or_else(|| Fault::NotMade("the nodes do not lie alike on all sides".into()))
 }
 
 fn reflected(e: &DisplacementElement) -> Result<Measured, Fault> {
+    mirrored(e, &shapes::irregular(e.outline.corners.len()), [[-1.0, 0.0], [0.0, 1.0]])
+}
+
+/// Whether the mirror image of the element on these corners has the mirror image of K.
+///
+/// # Errors
+/// There is no formula, or it fails.
+pub(in crate::workbench) fn mirrored(
+    e: &DisplacementElement,
+    at: &[[f64; 2]],
+    mirror: Turn,
+) -> Result<Measured, Fault> {
     e.formula()?;
-    let (layout, material, corners) = (e.layout()?, e.material()?, e.outline.corners.len());
-    let at = shapes::irregular(corners);
-    let mirror: Turn = [[-1.0, 0.0], [0.0, 1.0]];
+    let (layout, material, corners) = (e.layout()?, e.material()?, at.len());
     // Counter-clockwise again: the corners in reverse.
     let image: Vec<[f64; 2]> = (0..corners).map(|k| apply(mirror, at[(corners - k) % corners])).collect();
-    let (nodes, there) = (nodes_on(&layout, &at), nodes_on(&layout, &image));
+    let (nodes, there) = (nodes_on(&layout, at), nodes_on(&layout, &image));
     let back: Vec<[f64; 2]> = there.iter().map(|x| apply(mirror, *x)).collect();
     let from = places(&back, &nodes)?;
     let expected = carried(&e.stiffness(&nodes, &material)?, mirror, &from);

@@ -18,7 +18,6 @@ use std::cell::OnceCell;
 
 use nalgebra::DMatrix;
 
-pub(super) use frame::places;
 pub(super) use patch::{hooke_seen, material_words};
 pub(super) use rank::{silent_motions, spurious};
 pub(super) use rigid::{motions, within};
@@ -263,6 +262,31 @@ impl DisplacementElement {
     pub(super) fn size(&self) -> f64 {
         self.matrix.amax().max(f64::MIN_POSITIVE)
     }
+}
+
+/// The largest of a figure of K over shapes, the name of the shape where it is, and how many shapes enclose an area.
+///
+/// # Errors
+/// There is no formula, or it fails.
+pub(super) fn largest(
+    e: &DisplacementElement,
+    shapes: impl Iterator<Item = Shape>,
+    figure: impl Fn(&DMatrix<f64>, &[[f64; 2]], &Outline, &Material) -> f64,
+) -> Result<(f64, String, usize), Fault> {
+    e.formula()?;
+    let (layout, material) = (e.layout()?, e.material()?);
+    let (mut value, mut worst, mut count) = (0.0_f64, String::new(), 0);
+    for shape in shapes {
+        let nodes = nodes_on(&layout, &shape.corners);
+        let Some(outline) = Outline::of(&nodes) else { continue };
+        let own = figure(&e.stiffness(&nodes, &material)?, &nodes, &outline, &material);
+        if own > value || worst.is_empty() {
+            worst = shape.name;
+        }
+        value = value.max(own);
+        count += 1;
+    }
+    Ok((value, worst, count))
 }
 
 /// Nodes that lie as `layout` says between these corners.

@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, Matrix3};
 
-use super::{DisplacementElement, mesh::Patch, nodes_on, shapes};
+use super::{DisplacementElement, largest, mesh::Patch, shapes};
 use crate::report::text::number::{percent, significant};
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::material::Material;
@@ -142,21 +142,12 @@ fn forces(e: &DisplacementElement) -> Result<Measured, Fault> {
 }
 
 fn distorted(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.formula()?;
-    let (layout, material, corners) = (e.layout()?, e.material()?, e.outline.corners.len());
-    let (mut value, mut worst, mut count) = (0.0_f64, String::new(), 0);
-    for shape in shapes::sweep(corners).into_iter().chain(shapes::rotations(corners)) {
-        let nodes = nodes_on(&layout, &shape.corners);
-        let Some(outline) = Outline::of(&nodes) else { continue };
-        let k = e.stiffness(&nodes, &material)?;
+    let corners = e.outline.corners.len();
+    let shapes = shapes::sweep(corners).into_iter().chain(shapes::rotations(corners));
+    let (value, worst, count) = largest(e, shapes, |k, nodes, outline, material| {
         let hooke = material.hooke() * material.thickness;
-        let off = energy_off(&k, &nodes, &outline, &material).max(forces_off(&k, &nodes, &outline, &hooke));
-        if off > value || worst.is_empty() {
-            worst = shape.name;
-        }
-        value = value.max(off);
-        count += 1;
-    }
+        energy_off(k, nodes, outline, material).max(forces_off(k, nodes, outline, &hooke))
+    })?;
     let sentence = match value <= e.precision {
         true => format!("Energy and nodal forces of constant strains are right on {count} shapes"),
         false => format!("Energy or nodal forces of constant strains are wrong on the element {worst}"),

@@ -9,7 +9,6 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, Matrix4};
 
 use super::{Family, Point, Rule, Variant, points_at};
-use crate::element::polynomial::quadrature::segment_rule;
 use crate::element::polynomial::symmetric_rules::symmetric_rules;
 
 /// Points in each direction of a quadrilateral that are tried.
@@ -42,7 +41,7 @@ impl Way {
     pub const RIGHT: Self = Way { hoop: Radius::AtPoint, weight: Radius::AtPoint };
 }
 
-/// A rule of a family, with its name.
+/// A rule of a family.
 pub struct Points {
     /// How many points there are.
     pub count: usize,
@@ -51,13 +50,9 @@ pub struct Points {
 
 /// The rules by which textbooks and programs make rings of a family, the usual one first.
 pub fn rules(family: Family) -> Vec<Points> {
-    let square = |n: usize| {
-        let line = segment_rule(2 * n - 1);
-        line.iter().flat_map(|&(s, v)| line.iter().map(move |&(t, w)| ([s, t], v * w))).collect::<Rule>()
-    };
     let made = |rule: Rule| Points { count: rule.len(), rule };
     let mut all: Vec<Points> = match family.corners() {
-        4 => GAUSS.map(|n| made(square(n))).into(),
+        4 => GAUSS.map(|n| made(family.rule(Variant::Points(n)))).into(),
         _ => symmetric_rules()
             .iter()
             .map(|rule| made(rule.iter().map(|(l, w)| ([l[1], l[2]], 0.5 * w)).collect()))

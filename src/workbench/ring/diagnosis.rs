@@ -11,8 +11,8 @@ use crate::report::text::number::{percent, significant};
 use crate::scene::Kinematics;
 use crate::workbench::diagnosis::Diagnosis;
 use crate::workbench::displacement::DisplacementElement;
-use crate::workbench::formulas::Family;
 use crate::workbench::formulas::ring::{Points, Radius, Way, made, one_point, rules};
+use crate::workbench::formulas::{Family, Variant, placed};
 use crate::workbench::material::Material;
 
 /// Of |K|², what an explanation may leave beside the rounding of K.
@@ -72,15 +72,7 @@ impl Right {
 
     /// K by a rule and a way, numbered as the element is; `None` where there is none on these nodes.
     fn made(&self, hooke: &Matrix4<f64>, points: &Points, way: Way) -> Option<DMatrix<f64>> {
-        Some(self.placed(&made(self.family, &self.nodes, hooke, points, way).ok()?))
-    }
-
-    /// A matrix of the family, numbered as the element is.
-    fn placed(&self, own: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut at = vec![0; self.order.len()];
-        self.order.iter().enumerate().for_each(|(i, &n)| at[n] = i);
-        let place = |i: usize| 2 * at[i / 2] + i % 2;
-        DMatrix::from_fn(own.nrows(), own.ncols(), |i, j| own[(place(i), place(j))])
+        Some(placed(&made(self.family, &self.nodes, hooke, points, way).ok()?, &self.order))
     }
 
     /// How far a matrix is from the nearest right one, relative to its largest entry, and what that is called.
@@ -111,7 +103,8 @@ struct Trial {
 /// Explains why K is that of no right ring; `None` where it is one, or where none is known.
 pub fn diagnose(e: &DisplacementElement) -> Option<Diagnosis> {
     let right = Right::of(e).ok()?;
-    if right.nearest(&e.matrix).0 <= e.precision {
+    let (apart, _) = right.nearest(&e.matrix);
+    if apart <= e.precision {
         return None;
     }
     let all = trials(e, &right);
@@ -124,7 +117,6 @@ pub fn diagnose(e: &DisplacementElement) -> Option<Diagnosis> {
         let sentence = format!("The difference is explained: {}.", trial.sentence);
         return Some(Diagnosis { cause: trial.cause.into(), explained: 1.0 - left(trial), sentence });
     }
-    let apart = right.nearest(&e.matrix).0;
     let sentence = format!(
         "None of {} mistakes explains the difference from every right ring, {} of the largest entry.",
         all.len(),
@@ -139,28 +131,26 @@ fn trials(e: &DisplacementElement, right: &Right) -> Vec<Trial> {
     let mut push = |rank, cause, sentence: String, matrix: Option<DMatrix<f64>>| {
         all.extend(matrix.map(|matrix| Trial { rank, cause, sentence, matrix }));
     };
-    let one = one_point(right.family);
-    let reduced = if right.family.corners() == 4 { Some(&one) } else { None };
+    let slice = e.material.map(|m| Material { kinematics: Kinematics::PlaneStrain, ..m }.hooke());
+    let slice = slice.and_then(|d| right.family.stiffness(&right.nodes, &d, 1.0, Variant::Right).ok());
+    let text = "K is that of a slice of unit thickness in plane strain";
+    push(2, "plane-strain", text.into(), slice.map(|k| placed(&k, &right.order)));
+    if right.family.corners() == 4 {
+        let own = right.made(&right.hooke, &one_point(right.family), Way::RIGHT);
+        let text = "there is one quadrature point, in the middle";
+        push(3, "one-point", format!("{text}, and 2π is left out"), own.as_ref().map(|k| k / TAU));
+        push(2, "one-point", text.into(), own);
+    }
     for points in &right.rules {
-        let by = right.words(points);
         let own = right.made(&right.hooke, points, Way::RIGHT);
         push(0, "sign", "K has the wrong sign".into(), own.as_ref().map(|k| -k));
         let text = "K is that of one radian: 2π is left out".to_string();
         push(1, "per-radian", text, own.as_ref().map(|k| k / TAU));
         for (cause, words, way) in WAYS {
             let k = right.made(&right.hooke, points, way);
-            let also = "and 2π is left out";
-            push(3, cause, format!("{words}, {also}"), k.as_ref().map(|k| k / TAU));
+            push(3, cause, format!("{words}, and 2π is left out"), k.as_ref().map(|k| k / TAU));
             push(2, cause, words.to_string(), k);
         }
-        let slice = e.material.map(|m| Material { kinematics: Kinematics::PlaneStrain, ..m }.hooke());
-        let slice = slice.and_then(|d| right.family.stiffness(&right.nodes, &d, 1.0, Default::default()).ok());
-        push(
-            2,
-            "plane-strain",
-            "K is that of a slice of unit thickness in plane strain".into(),
-            slice.map(|k| right.placed(&k)),
-        );
         let text =
             "the hoop stress is without the others: the law is one without ν between hoop and section".to_string();
         push(3, "hoop-law", text, right.made(&uncoupled(&right.hooke), points, Way::RIGHT));
@@ -174,32 +164,17 @@ fn trials(e: &DisplacementElement, right: &Right) -> Vec<Trial> {
         {
             push(2, "shear", format!("{words}: γ_rz = 2 ε_rz and ε_rz are mixed up"), shear(times));
         }
-        if let Some(own) = &own {
-            let count = own.nrows() / 2;
-            let blocked = |i: usize| if i < count { 2 * i } else { 2 * (i - count) + 1 };
-            let text =
-                "unknowns are numbered r of all nodes first, then z of all nodes: say --order blocked".to_string();
-            push(1, "unknowns", text, Some(permuted(own, blocked)));
-            let exchanged = permuted(own, |i| i ^ 1);
-            push(1, "unknowns", "the unknowns of a node are z first, then r".to_string(), Some(exchanged));
+        let Some(own) = own else { continue };
+        let count = own.nrows() / 2;
+        let blocked = |i: usize| if i < count { 2 * i } else { 2 * (i - count) + 1 };
+        let text = "unknowns are numbered r of all nodes first, then z of all nodes: say --order blocked";
+        push(1, "unknowns", text.into(), Some(permuted(&own, blocked)));
+        push(1, "unknowns", "the unknowns of a node are z first, then r".into(), Some(permuted(&own, |i| i ^ 1)));
+        let factor = e.matrix.dot(&own) / own.norm_squared();
+        if (factor - 1.0).abs() > SAME {
+            let text = format!("K is {} times that of the {}", significant(factor, 6), right.words(points));
+            push(4, "factor", text, Some(own * factor));
         }
-        if let Some(own) = own {
-            let factor = e.matrix.dot(&own) / own.norm_squared();
-            if (factor - 1.0).abs() > SAME {
-                let text = format!("K is {} times that of the {by}", significant(factor, 6));
-                push(4, "factor", text, Some(own * factor));
-            }
-        }
-    }
-    if let Some(points) = reduced {
-        let own = right.made(&right.hooke, points, Way::RIGHT);
-        push(2, "one-point", "there is one quadrature point, in the middle".into(), own.clone());
-        push(
-            3,
-            "one-point",
-            "there is one quadrature point, in the middle, and 2π is left out".into(),
-            own.map(|k| k / TAU),
-        );
     }
     all
 }

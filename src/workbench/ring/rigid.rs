@@ -1,5 +1,7 @@
 //! The one rigid motion of a body of revolution, along its axis.
 
+use nalgebra::DMatrix;
+
 use super::shift;
 use crate::report::text::number::significant;
 use crate::workbench::displacement::{DisplacementElement, spurious};
@@ -11,12 +13,8 @@ pub const MOTION: Property<DisplacementElement> = Property {
     asks: "K e = 0: moving the ring along its axis takes no force",
     usual: true,
     measure: |e| {
-        let value = (&e.matrix * shift(e.nodes.len())).amax() / e.size();
-        let sentence = match value <= e.precision {
-            true => "The shift along the axis is annihilated, relative to the largest entry of K",
-            false => "K gives forces for a shift along the axis, relative to its largest entry",
-        };
-        Ok(Measured::new(value, e.precision, sentence))
+        let good = "The shift along the axis is annihilated, relative to the largest entry of K";
+        Ok(vanishing(e, &e.matrix, [good, "K gives forces for a shift along the axis, relative to its largest entry"]))
     },
 };
 
@@ -25,12 +23,9 @@ pub const FORCE: Property<DisplacementElement> = Property {
     asks: "eᵀ K = 0: the nodal forces of every motion have no resultant along the axis",
     usual: true,
     measure: |e| {
-        let value = (e.matrix.transpose() * shift(e.nodes.len())).amax() / e.size();
-        let sentence = match value <= e.precision {
-            true => "Nodal forces balance along the axis, relative to the largest entry of K",
-            false => "Nodal forces have a resultant along the axis, relative to the largest entry of K",
-        };
-        Ok(Measured::new(value, e.precision, sentence))
+        let good = "Nodal forces balance along the axis, relative to the largest entry of K";
+        let bad = "Nodal forces have a resultant along the axis, relative to the largest entry of K";
+        Ok(vanishing(e, &e.matrix.transpose(), [good, bad]))
     },
 };
 
@@ -40,6 +35,12 @@ pub const RANK: Property<DisplacementElement> = Property {
     usual: true,
     measure: rank,
 };
+
+/// The forces that K, or its transpose, gives for the shift along the axis.
+fn vanishing(e: &DisplacementElement, k: &DMatrix<f64>, [good, bad]: [&str; 2]) -> Measured {
+    let value = (k * shift(e.nodes.len())).amax() / e.size();
+    Measured::new(value, e.precision, if value <= e.precision { good } else { bad })
+}
 
 fn rank(e: &DisplacementElement) -> Result<Measured, Fault> {
     let found = spurious(&e.matrix, &shift(e.nodes.len()), e.precision);

@@ -5,11 +5,11 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{DMatrix, Matrix3, Vector4};
+use nalgebra::{DMatrix, Vector4};
 
 use super::away;
 use crate::report::text::number::percent;
-use crate::workbench::displacement::{DisplacementElement, nodes_on, sweep};
+use crate::workbench::displacement::{DisplacementElement, Shape, largest, sweep};
 use crate::workbench::finding::{Fault, Measured, Property};
 use crate::workbench::material::Material;
 use crate::workbench::outline::{Outline, side_weights};
@@ -42,7 +42,7 @@ const AWAY: [f64; 3] = [0.0, 0.4, 30.0];
 const STATES: [[f64; 4]; 3] = [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
 /// Their displacements at the nodes, one a column; axial ones about the first node.
-pub(super) fn states(nodes: &[[f64; 2]]) -> DMatrix<f64> {
+fn states(nodes: &[[f64; 2]]) -> DMatrix<f64> {
     let mut u = DMatrix::zeros(2 * nodes.len(), 3);
     for (n, [r, z]) in nodes.iter().enumerate() {
         u[(2 * n, 0)] = *r;
@@ -62,12 +62,12 @@ fn volume(nodes: &[[f64; 2]], outline: &Outline) -> f64 {
 }
 
 /// Twice the energies of the states as K has them, and as they must be.
-fn energies(k: &DMatrix<f64>, nodes: &[[f64; 2]], outline: &Outline, material: &Material) -> [Matrix3<f64>; 2] {
+fn energies(k: &DMatrix<f64>, nodes: &[[f64; 2]], outline: &Outline, material: &Material) -> [DMatrix<f64>; 2] {
     let u = states(nodes);
     let found = u.tr_mul(&(k * &u));
     let (d, volume) = (material.hooke_of_rings(), volume(nodes, outline));
-    let exact = Matrix3::from_fn(|i, j| volume * Vector4::from(STATES[i]).dot(&(d * Vector4::from(STATES[j]))));
-    [Matrix3::from_fn(|i, j| found[(i, j)]), exact]
+    let exact = DMatrix::from_fn(3, 3, |i, j| volume * Vector4::from(STATES[i]).dot(&(d * Vector4::from(STATES[j]))));
+    [found, exact]
 }
 
 /// Nodal forces of radial and axial stretching as K has them, and as they must be.
@@ -88,20 +88,18 @@ fn nodal_forces(k: &DMatrix<f64>, nodes: &[[f64; 2]], outline: &Outline, materia
     [found, exact]
 }
 
-fn off<R: nalgebra::Dim, C: nalgebra::Dim, S: nalgebra::Storage<f64, R, C>>(
-    [found, exact]: [&nalgebra::Matrix<f64, R, C, S>; 2],
-) -> f64 {
-    let most = found.iter().zip(exact.iter()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    most / exact.amax()
+/// How far what is found is from what is exact, relative to the largest entry.
+fn off([found, exact]: &[DMatrix<f64>; 2]) -> f64 {
+    (found - exact).amax() / exact.amax()
 }
 
 fn energy(e: &DisplacementElement) -> Result<Measured, Fault> {
-    let [found, exact] = energies(&e.matrix, &e.nodes, &e.outline, &e.material()?);
-    let value = off([&found, &exact]);
+    let both = energies(&e.matrix, &e.nodes, &e.outline, &e.material()?);
+    let value = off(&both);
     let sentence = if value <= e.precision {
         "Strains that are the same everywhere store what they must".to_string()
     } else {
-        let part = |i: usize| percent(found[(i, i)] / exact[(i, i)]);
+        let part = |i: usize| percent(both[0][(i, i)] / both[1][(i, i)]);
         format!(
             "Radial stretching, axial stretching and shear store {}, {} and {} of what they must",
             part(0),
@@ -113,8 +111,7 @@ fn energy(e: &DisplacementElement) -> Result<Measured, Fault> {
 }
 
 fn forces(e: &DisplacementElement) -> Result<Measured, Fault> {
-    let [found, exact] = nodal_forces(&e.matrix, &e.nodes, &e.outline, &e.material()?);
-    let value = off([&found, &exact]);
+    let value = off(&nodal_forces(&e.matrix, &e.nodes, &e.outline, &e.material()?));
     let sentence = match value <= e.precision {
         true => "Nodal forces of radial and axial stretching are those of their stress",
         false => "Nodal forces of radial or axial stretching are not those of their stress",
@@ -123,24 +120,17 @@ fn forces(e: &DisplacementElement) -> Result<Measured, Fault> {
 }
 
 fn distorted(e: &DisplacementElement) -> Result<Measured, Fault> {
-    e.formula()?;
-    let (layout, material, corners) = (e.layout()?, e.material()?, e.outline.corners.len());
-    let (mut value, mut worst, mut count) = (0.0_f64, String::new(), 0);
-    let shapes = sweep(corners);
-    for (shape, by) in shapes.iter().flat_map(|shape| AWAY.map(|by| (shape, by))) {
-        let nodes = nodes_on(&layout, &away(&shape.corners, by));
-        let Some(outline) = Outline::of(&nodes) else { continue };
-        let k = e.stiffness(&nodes, &material)?;
-        let [found, exact] = energies(&k, &nodes, &outline, &material);
-        let [acting, wanted] = nodal_forces(&k, &nodes, &outline, &material);
+    let at = |shape: &Shape, by: f64| Shape {
+        name: format!("{}, {by} away from the axis", shape.name),
+        corners: away(&shape.corners, by),
+    };
+    let shapes = sweep(e.outline.corners.len());
+    let shapes = AWAY.iter().flat_map(|&by| shapes.iter().map(move |shape| at(shape, by)));
+    let (value, worst, count) = largest(e, shapes, |k, nodes, outline, material| {
         // Radii cancel in differences: rounding grows with the distance, in sizes of the shape.
-        let own = off([&found, &exact]).max(off([&acting, &wanted])) / (1.0 + by);
-        if own > value || worst.is_empty() {
-            worst = format!("{}, {by} away from the axis", shape.name);
-        }
-        value = value.max(own);
-        count += 1;
-    }
+        let by = nodes.iter().map(|x| x[0]).fold(f64::INFINITY, f64::min) / outline.size;
+        off(&energies(k, nodes, outline, material)).max(off(&nodal_forces(k, nodes, outline, material))) / (1.0 + by)
+    })?;
     let sentence = match value <= e.precision {
         true => format!("Energy and nodal forces of such strains are right on {count} shapes and places"),
         false => format!("Energy or nodal forces of such strains are wrong on the element {worst}"),
