@@ -121,6 +121,19 @@ impl EdgeWeight {
         }
     }
 
+    /// The ends of the linear function that has, times the weight, force and moment of `p`: for a weighted `p` the nearest one in the
+    /// weighted mean square.
+    pub fn linear(&self, p: &[f64]) -> [f64; 2] {
+        let [[a, b], [_, d]] = [0, 1].map(|i| [0, 1].map(|j| self.product(1, i, j)));
+        let moments = side::moments(p, 1);
+        [d * moments[0] - b * moments[1], a * moments[1] - b * moments[0]].map(|x| x / (a * d - b * b))
+    }
+
+    /// ∫ of the linear function that is one at end `end` and zero at the other, times the weight.
+    pub fn of_hat(&self, end: usize) -> f64 {
+        self.product(1, end, 0) + self.product(1, end, 1)
+    }
+
     /// ∫ B_i B_j times the weight, for polynomials of degree `k` on an edge of length one.
     pub fn product(&self, k: usize, i: usize, j: usize) -> f64 {
         let Some([a, b]) = self.0 else { return side::product(k, i, k, j) };

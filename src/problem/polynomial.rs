@@ -98,12 +98,7 @@ fn product(f: &[f64], g: &[f64]) -> Vec<f64> {
 
 /// The ends of the affine function that is nearest in the weighted mean square.
 fn nearest(whole: &[[f64; 2]], weight: &EdgeWeight) -> [[f64; 2]; 2] {
-    let [[a, b], [_, d]] = [0, 1].map(|i| [0, 1].map(|j| weight.product(1, i, j)));
-    let along = |c: usize| {
-        let own: Vec<f64> = whole.iter().map(|p| p[c]).collect();
-        let moments = side::moments(&weight.times(&own), 1);
-        [d * moments[0] - b * moments[1], a * moments[1] - b * moments[0]].map(|x| x / (a * d - b * b))
-    };
+    let along = |c: usize| weight.linear(&weight.times(&whole.iter().map(|p| p[c]).collect::<Vec<_>>()));
     let [x, y] = [along(0), along(1)];
     [[x[0], y[0]], [x[1], y[1]]]
 }

@@ -298,7 +298,7 @@ pub fn repaired_at_contact(
     let mesh = &problem.mesh;
     let holds = holds(problem)?;
     let size = field.values().iter().flatten().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
-    let nodes = Nodes::new(mesh.points.len(), std::iter::repeat_n(field.degree(), mesh.edges.len()));
+    let nodes = Nodes::of_degree(mesh, field.degree());
     let start = NodalValues { values: field.boundary().to_vec(), nodes };
     let [penetration, at_vertices] = contact::penetration(problem, &start).map(|depth| depth / size);
     let rows = rows::rows(problem, &start.nodes);

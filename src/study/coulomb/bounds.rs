@@ -68,18 +68,11 @@ fn linear(p: &[f64], weight: &EdgeWeight) -> [f64; 2] {
         ([first, last], [a, b]) if a == b => return [*first / a, *last / b],
         _ => {}
     }
-    let [force, moment] = [side::integral(p, &[1.0]), side::integral(p, &[0.0, 1.0])];
-    // Force and moment of the functions that are one at one end and zero at the other.
-    let [[f, m], [g, n]] = [[1.0, 0.0], [0.0, 1.0]].map(|hat| {
-        let hat = weight.times(&hat);
-        [side::integral(&hat, &[1.0]), side::integral(&hat, &[0.0, 1.0])]
-    });
-    let determinant = f * n - g * m;
-    let ends = [(force * n - g * moment) / determinant, (f * moment - force * m) / determinant];
-    match ends {
-        [a, _] if a < 0.0 => [0.0, force / g],
-        [_, b] if b < 0.0 => [force / f, 0.0],
-        _ => ends,
+    let force = side::integral(p, &[1.0]);
+    match weight.linear(p) {
+        [a, _] if a < 0.0 => [0.0, force / weight.of_hat(1)],
+        [_, b] if b < 0.0 => [force / weight.of_hat(0), 0.0],
+        ends => ends,
     }
 }
 

@@ -17,6 +17,11 @@ pub struct Nodes {
 }
 
 impl Nodes {
+    /// Of one degree on all edges of a mesh.
+    pub fn of_degree(mesh: &Triangulation, degree: usize) -> Self {
+        Nodes::new(mesh.points.len(), std::iter::repeat_n(degree, mesh.edges.len()))
+    }
+
     /// For edges of the given degrees, at least one.
     pub fn new(vertices: usize, degrees: impl IntoIterator<Item = usize>) -> Self {
         let mut start = vec![vertices];
