@@ -172,6 +172,39 @@ impl Solution<'_> {
         self.candidate.value(node)
     }
 
+    /// The values that the coefficients inside pairs are functions of: at nodes of degree 2, coefficients above. None where what stands
+    /// for quadrilaterals is no displacement of the model.
+    fn inside_values(&self) -> Option<impl Fn(usize) -> [f64; 2] + Copy> {
+        let degree = self.candidate.degree;
+        let coefficients = self.candidate.higher.as_ref().filter(|_| degree > 2);
+        let is_own = self.candidate.on_quadrilaterals.is_none() || degree <= 2;
+        is_own.then_some(move |node: usize| coefficients.map_or_else(|| self.value(node), |field| field.values()[node]))
+    }
+
+    /// What rests on a held vertex of a pair is the support's.
+    fn rest_on_supports(&self, pair: &ContactPair, rest: &mut [[f64; 2]]) {
+        for v in pair.first.into_iter().chain(pair.second.into_iter().flatten()) {
+            rest[v] = self.holds.vertices[v].project(rest[v]);
+        }
+    }
+
+    /// The unit row of a force along `direction` between two vertices, with its length before; `None` where supports take it.
+    fn unit_row(
+        &self,
+        (first, second): (usize, Option<usize>),
+        direction: [f64; 2],
+        slot: &HashMap<usize, usize>,
+    ) -> Option<(DVector<f64>, f64)> {
+        let mut row = DVector::<f64>::zeros(2 * slot.len());
+        for (v, sign) in [(Some(first), 1.0), (second, -1.0)] {
+            let Some(v) = v else { continue };
+            let d = self.holds.vertices[v].project(direction);
+            (0..2).for_each(|c| row[slot[&v] + c] += sign * d[c]);
+        }
+        let length = row.norm();
+        (length > HELD).then(|| (row / length, length))
+    }
+
     /// Coefficients this far below their bound are open.
     fn closed_within(&self) -> f64 {
         CLOSED * self.candidate.largest()
@@ -214,10 +247,7 @@ impl Solution<'_> {
                 add(other, -2.0);
                 second.into_iter().for_each(|v| add(v, 0.5));
             }
-            // What now rests on a held vertex is the support's.
-            for v in pair.first.into_iter().chain(pair.second.into_iter().flatten()) {
-                rest[v] = self.holds.vertices[v].project(rest[v]);
-            }
+            self.rest_on_supports(pair, rest);
         }
     }
 
@@ -239,9 +269,7 @@ impl Solution<'_> {
                 rest[*node] = [0, 1].map(|c| rest[*node][c] + reaction * factor[c]);
             }
         }
-        for v in pair.first.into_iter().chain(pair.second.into_iter().flatten()) {
-            rest[v] = self.holds.vertices[v].project(rest[v]);
-        }
+        self.rest_on_supports(pair, rest);
     }
 
     /// Removes the forces of the vertex coefficients from `rest`, leaving the least remainder of each group of vertices that
@@ -258,19 +286,9 @@ impl Solution<'_> {
                 if jump < end.gap - within {
                     continue;
                 }
-                for direction in self.directions(end) {
-                    let mut row = DVector::<f64>::zeros(size);
-                    for (v, sign) in [(Some(end.first), 1.0), (end.second, -1.0)] {
-                        let Some(v) = v else { continue };
-                        let d = self.holds.vertices[v].project(direction);
-                        row[slot[&v]] += sign * d[0];
-                        row[slot[&v] + 1] += sign * d[1];
-                    }
-                    let length = row.norm();
-                    if length > HELD {
-                        rows.push(row / length);
-                    }
-                }
+                let own = self.directions(end);
+                let own = own.into_iter().filter_map(|n| self.unit_row((end.first, end.second), n, &slot));
+                rows.extend(own.map(|(row, _)| row));
             }
             let sticking = self.sticking(&group, &slot);
             if self.couples(&group) {

@@ -43,11 +43,7 @@ impl Solution<'_> {
     /// Takes the forces of contact with Coulomb friction between the ends of its pairs out of `rest`.
     pub(super) fn press_and_slide_inside(&self, rest: &mut [[f64; 2]]) {
         let degree = self.candidate.degree;
-        if degree < 2 || (self.candidate.on_quadrilaterals.is_some() && degree > 2) {
-            return;
-        }
-        let coefficients = self.candidate.higher.as_ref().filter(|_| degree > 2);
-        let value = |node: usize| coefficients.map_or_else(|| self.value(node), |field| field.values()[node]);
+        let Some(value) = self.inside_values().filter(|_| degree > 1) else { return };
         let within = self.closed_within();
         for pair in self.problem.pairs() {
             let Some(mu) = pair.friction.and_then(|friction| friction.coefficient) else { continue };
@@ -71,10 +67,7 @@ impl Solution<'_> {
                     rest[*node] = [0, 1].map(|c| rest[*node][c] + force / lengths[acts[k]] * factor[c]);
                 }
             }
-            // What now rests on a held vertex is the support's.
-            for v in pair.first.into_iter().chain(pair.second.into_iter().flatten()) {
-                rest[v] = self.holds.vertices[v].project(rest[v]);
-            }
+            self.rest_on_supports(pair, rest);
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::statics::cone::unbalanced;
 
 /// The nodes of a displacement of degree `k`, vertices and insides of edges.
 pub(super) fn nodes(problem: &Problem, k: usize) -> Nodes {
-    Nodes::new(problem.mesh.points.len(), std::iter::repeat_n(k, problem.mesh.edges.len()))
+    Nodes::of_degree(&problem.mesh, k)
 }
 
 /// Coordinates of a node of degree `k`: at a vertex, inside an edge, or inside a triangle.
@@ -115,10 +115,7 @@ impl Solution<'_> {
                     rest[*node] = [0, 1].map(|c| rest[*node][c] + reaction * factor[c]);
                 }
             }
-            // What now rests on a held vertex is the support's.
-            for v in pair.first.into_iter().chain(pair.second.into_iter().flatten()) {
-                rest[v] = self.holds.vertices[v].project(rest[v]);
-            }
+            self.rest_on_supports(pair, rest);
         }
     }
 

@@ -20,11 +20,7 @@ impl<'a> Solution<'a> {
     /// Takes the forces of the coefficients inside the pairs out of `rest`.
     pub(super) fn slide_inside(&self, rest: &mut [[f64; 2]]) {
         let degree = self.candidate.degree;
-        if self.candidate.on_quadrilaterals.is_some() && degree > 2 {
-            return;
-        }
-        let coefficients = self.candidate.higher.as_ref().filter(|_| degree > 2);
-        let value = |node: usize| coefficients.map_or_else(|| self.value(node), |field| field.values()[node]);
+        let Some(value) = self.inside_values() else { return };
         let within = self.closed_within();
         let vertices = self.problem.mesh.points.len();
         let pairs = |(index, interface): (usize, &'a Interface)| {
@@ -50,9 +46,7 @@ impl<'a> Solution<'a> {
                 }
             }
             if pair.friction.is_some() {
-                for v in pair.first.into_iter().chain(pair.second.into_iter().flatten()) {
-                    rest[v] = self.holds.vertices[v].project(rest[v]);
-                }
+                self.rest_on_supports(pair, rest);
             }
         }
     }
@@ -88,15 +82,8 @@ impl<'a> Solution<'a> {
             if slide.coefficient.is_some() || self.along(slide).abs() > within {
                 return None;
             }
-            let mut row = DVector::<f64>::zeros(2 * group.vertices.len());
-            for (v, sign) in [(Some(slide.first), 1.0), (slide.second, -1.0)] {
-                let Some(v) = v else { continue };
-                let d = self.holds.vertices[v].project(slide.tangent);
-                row[slot[&v]] += sign * d[0];
-                row[slot[&v] + 1] += sign * d[1];
-            }
-            let length = row.norm();
-            (length > HELD).then(|| (row / length, slide.limit * length))
+            let (row, length) = self.unit_row((slide.first, slide.second), slide.tangent, slot)?;
+            Some((row, slide.limit * length))
         };
         own.filter_map(row).collect()
     }

@@ -96,13 +96,9 @@ pub fn inside(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<Slide
 
 /// The coefficients of the jump between the ends of a pair, as functions of values for degree 2 and of Bernstein coefficients above.
 pub fn rows_inside(problem: &Problem, pair: &ContactPair, degree: usize) -> Vec<Row> {
-    let vertices = problem.mesh.points.len();
     let mut rows = match degree {
-        2 => bernstein(pair, vertices),
-        _ => {
-            let nodes = Nodes::new(vertices, std::iter::repeat_n(degree, problem.mesh.edges.len()));
-            of_pair(pair, &sides(pair, &problem.mesh, &nodes))
-        }
+        2 => bernstein(pair, problem.mesh.points.len()),
+        _ => of_pair(pair, &sides(pair, &problem.mesh, &Nodes::of_degree(&problem.mesh, degree))),
     };
     rows.pop();
     rows.split_off(1.min(rows.len()))

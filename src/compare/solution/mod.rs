@@ -183,8 +183,7 @@ impl<'a> Solution<'a> {
         (forces, points, rule): (NodalForces, Option<usize>, Option<Rule>),
     ) -> Result<Self, NoUpperBound> {
         let holds = holds(problem)?;
-        let inside = std::iter::repeat_n(candidate.degree, problem.mesh.edges.len());
-        let nodes = Nodes::new(problem.mesh.points.len(), inside);
+        let nodes = Nodes::of_degree(&problem.mesh, candidate.degree);
         let sites = Sites::new(problem, candidate.degree, &holds);
         let mut rest = forces.unsupported(&holds, &nodes);
         let unsupported = rest.clone();

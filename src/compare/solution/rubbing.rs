@@ -4,6 +4,8 @@
 //! sign these agree in coefficients of its degree, and where the sign changes the integral may ask for less. Each of them
 //! is accepted. Coulomb's law bounds the friction of a place by its own contact force.
 
+use std::collections::BTreeMap;
+
 use super::{SOLVER, Solution, Span};
 use crate::compare::Check;
 use crate::compare::contact::slides::limits;
@@ -22,6 +24,23 @@ pub struct Rubbed {
     pub limit: f64,
     /// Error of the force in the law.
     pub miss: f64,
+}
+
+/// The friction forces that a place may have, and the largest of them.
+#[derive(Debug, Clone, Copy, Default)]
+struct Law {
+    least: f64,
+    most: f64,
+    limit: f64,
+}
+
+impl Law {
+    /// Against the slip where the sides slide, and within `limit` where they stick.
+    fn of(limit: f64, slip: f64, slides: bool) -> Self {
+        let against = -limit * slip.signum();
+        let [least, most] = if slides { [against; 2] } else { [-limit, limit] };
+        Law { least, most, limit }
+    }
 }
 
 /// The form in which a method imposes the law.
@@ -55,58 +74,53 @@ impl Solution<'_> {
         if ask == Ask::InCoefficients {
             (force, slip) = self.sites.in_coefficients(&self.rubbing, &self.slip);
         }
+        let laws = match self.coefficient(interface) {
+            Some(mu) => self.by_pressing(interface, mu, (&slip, ask)),
+            None => self.by_bound(interface, (&slip, ask)),
+        };
+        let rubbed = |(site, Law { least, most, limit }): (usize, Law)| Rubbed {
+            site,
+            force: force[site],
+            slip: slip[site],
+            limit,
+            miss: (least - force[site]).max(force[site] - most).max(0.0),
+        };
+        laws.into_iter().filter(|(site, _)| self.sites.rubs_alone(*site)).map(rubbed).collect()
+    }
+
+    /// The law at the places of contact `interface` where a bound of friction is given.
+    fn by_bound(&self, interface: usize, (slip, ask): (&[f64], Ask)) -> BTreeMap<usize, Law> {
         let sticks = self.sticks_below();
-        let count = self.sites.list.len();
-        let (mut least, mut most, mut limit) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
-        for (site, share) in self.limits_by_pressing(interface, ask) {
-            let against = -share * slip[site].signum();
-            limit[site] = share;
-            [least[site], most[site]] = if slip[site].abs() > sticks { [against; 2] } else { [-share, share] };
-        }
-        let given = self.sites.edges.iter().filter(|span| self.coefficient(span.interface).is_none());
-        for span in given.filter(|span| span.interface == interface) {
+        let mut laws = BTreeMap::<usize, Law>::new();
+        for span in self.sites.edges.iter().filter(|span| span.interface == interface) {
             let pair = &self.problem.interfaces[interface].pairs[span.pair];
             let shares = self.shares(span, pair, ask);
             let any = |sign: f64| shares.iter().any(|(site, _)| sign * slip[*site] > sticks);
             let turns = any(1.0) && any(-1.0);
             for (site, share) in shares {
-                limit[site] += share;
-                let slides = slip[site].abs() > sticks;
-                let against = -share * slip[site].signum();
-                let [low, high] = if slides && !turns { [against; 2] } else { [-share, share] };
-                least[site] += low;
-                most[site] += high;
+                let own = Law::of(share, slip[site], slip[site].abs() > sticks && !turns);
+                let law = laws.entry(site).or_default();
+                *law = Law { least: law.least + own.least, most: law.most + own.most, limit: law.limit + own.limit };
             }
         }
-        let rubs = |s: &usize| {
-            limit[*s] > 0.0 || (self.coefficient(interface).is_some() && self.sites.list[*s].interface == interface)
-        };
-        let own = (0..count).filter(|s| rubs(s) && self.sites.rubs_alone(*s));
-        let rubbed = |site: usize| Rubbed {
-            site,
-            force: force[site],
-            slip: slip[site],
-            limit: limit[site],
-            miss: (least[site] - force[site]).max(force[site] - most[site]).max(0.0),
-        };
-        own.map(rubbed).collect()
+        laws.retain(|_, law| law.limit > 0.0);
+        laws
     }
 
-    /// Coulomb's coefficient along contact `interface`, where the field is held to its own contact forces.
-    pub fn coefficient(&self, interface: usize) -> Option<f64> {
-        self.problem.interfaces[interface].pairs.iter().find_map(|pair| pair.friction?.coefficient)
-    }
-
-    /// Coulomb's coefficient times the forces that press the sides together at the places of contact `interface`; none where the bound of
-    /// friction is given.
-    fn limits_by_pressing(&self, interface: usize, ask: Ask) -> Vec<(usize, f64)> {
-        let Some(mu) = self.coefficient(interface) else { return Vec::new() };
+    /// The law at the places of contact `interface` whose friction is bounded by `mu` times the forces that press the sides together.
+    fn by_pressing(&self, interface: usize, mu: f64, (slip, ask): (&[f64], Ask)) -> BTreeMap<usize, Law> {
+        let sticks = self.sticks_below();
         let pressing = match ask {
             Ask::AtNodes => self.pressing.clone(),
             Ask::InCoefficients => self.sites.in_coefficients(&self.pressing, &self.excess).0,
         };
         let own = (0..pressing.len()).filter(|s| self.sites.list[*s].interface == interface);
-        own.map(|s| (s, mu * pressing[s].max(0.0))).collect()
+        own.map(|s| (s, Law::of(mu * pressing[s].max(0.0), slip[s], slip[s].abs() > sticks))).collect()
+    }
+
+    /// Coulomb's coefficient along contact `interface`, where the field is held to its own contact forces.
+    pub fn coefficient(&self, interface: usize) -> Option<f64> {
+        self.problem.interfaces[interface].pairs.iter().find_map(|pair| pair.friction?.coefficient)
     }
 
     /// Largest friction forces at the places of a pair, thickness included.

@@ -150,10 +150,10 @@ impl Along<'_> {
 
     /// The bound of the scene counted from the other end of the contact.
     fn turned_bound(&self, ask: Ask, sticks: f64) -> Option<Finding> {
-        let rubbed = self.solution.rubbed_as(self.interface, ask);
         if self.follows_coulomb() {
             return None;
         }
+        let rubbed = self.solution.rubbed_as(self.interface, ask);
         let sliding: Vec<&Rubbed> = rubbed.iter().filter(|r| r.slip.abs() > sticks).collect();
         let pairs = &self.solution.problem.interfaces[self.interface].pairs;
         let (begin, end) = (pairs.first()?.arc[0], pairs.last()?.arc[1]);
@@ -205,7 +205,7 @@ impl Along<'_> {
     /// Misfit of forces and a law, relative to all forces: at the nodes, or integrated by a rule.
     fn missed(&self, rubbed: &[Rubbed], law: Smooth, parameter: f64, rule: Option<usize>) -> f64 {
         let solution = self.solution;
-        let top = self.largest_bound();
+        let top = self.largest_bound(rubbed);
         let mut made = vec![0.0; solution.sites.list.len()];
         match rule {
             None => {
@@ -238,10 +238,10 @@ impl Along<'_> {
         self.solution.coefficient(self.interface).is_some()
     }
 
-    fn largest_bound(&self) -> f64 {
+    /// The largest bound, of Coulomb's law at the places that were looked at.
+    fn largest_bound(&self, rubbed: &[Rubbed]) -> f64 {
         let pairs = &self.solution.problem.interfaces[self.interface].pairs;
         if self.follows_coulomb() {
-            let rubbed = self.solution.rubbed_as(self.interface, Ask::AtNodes);
             return rubbed.iter().map(|r| r.limit / self.area(r.site)).fold(0.0, f64::max);
         }
         pairs.iter().filter_map(|pair| pair.friction).map(|friction| friction.largest()).fold(0.0, f64::max)
@@ -256,7 +256,7 @@ impl Along<'_> {
         let gives = rubbed.iter().filter(|r| r.force.abs() < 0.99 * r.limit).map(|r| r.slip.abs()).fold(0.0, f64::max);
         let gives = format!("below the bound it gives way by up to {}", number(gives));
         if fit.law == Smooth::Spring {
-            let stiffness = self.largest_bound() / fit.parameter;
+            let stiffness = self.largest_bound(rubbed) / fit.parameter;
             let sentence = format!(
                 "contact {} is held along its sides by a penalty with the stiffness {} for each unit of area; {gives}",
                 self.name,
