@@ -65,14 +65,31 @@ const COULOMB: [(&str, Option<Explained>); 9] = [
 
 const MU: &str = "0.15";
 
+/// A block on a rigid floor, pressed and moved along it.
+const FLOOR: &str = r#"
+model = { kinematics = "plane-strain" }
+contacts = [{ on = "foot", friction = { coefficient = 0.4 } }]
+supports = [{ on = "top", type = "clamped", displacement = [0.06, -0.05] }]
+bodies.b = { young = 3.0, poisson = 0.25 }
+geometry.size = 0.25
+[[geometry.polygons]]
+body = "b"
+points = [[0, 0], [2, 0], [2, 1], [0, 1]]
+edges = ["foot", "", "top", ""]
+"#;
+
 /// Writes the scene and its fields; `false` where numpy or scipy is missing.
 fn prepared(folder: &Path, names: &[&str]) -> bool {
     prepared_with(folder, names, None)
 }
 
+fn python() -> PathBuf {
+    std::env::var_os("HYPERCIRCLE_PYTHON").map_or("/usr/bin/python3".into(), PathBuf::from)
+}
+
 /// As [`prepared`], with Coulomb friction of this coefficient.
 fn prepared_with(folder: &Path, names: &[&str], mu: Option<&str>) -> bool {
-    let python = std::env::var_os("HYPERCIRCLE_PYTHON").map_or("/usr/bin/python3".into(), PathBuf::from);
+    let python = python();
     if !Command::new(&python).args(["-c", "import numpy, scipy.sparse"]).output().is_ok_and(|o| o.status.success()) {
         eprintln!("skipped: {} has no numpy and scipy", python.display());
         return false;
@@ -164,4 +181,28 @@ fn contact_in_the_mean_is_refused_beside_friction() {
     }
     let arguments = ["certify", "scene.toml", "--displacement", "P1/right.vtk", "--solution", "--contact", "weak"];
     ended("--contact weak", &run(hypercircle(folder.path(), arguments)), 2, &["friction"]);
+}
+
+#[test]
+fn coulomb_friction_of_getfem_is_a_solution_of_its_own_coefficient_alone() {
+    if !Command::new(python()).args(["-c", "import getfem"]).output().is_ok_and(|o| o.status.success()) {
+        eprintln!("skipped: {} has no GetFEM", python().display());
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("scene.toml"), FLOOR).expect("writable");
+    let problem = Problem::load(Scene::read(&folder.path().join("scene.toml")).expect("a scene")).expect("a mesh");
+    write_problem(&problem, &[], folder.path()).expect("writable");
+    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/displacement/friction_of_getfem.py");
+    let mut command = Command::new(python());
+    command.arg(program).arg(folder.path().join("problem.json")).arg(folder.path()).args(["0.4", "0.3"]);
+    let output = command.output().expect("an interpreter");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let (code, report) = certified(folder.path(), "getfem-0.4", &[]);
+    assert_eq!(code, 0, "{}", report["verdict"]);
+    let (code, report) = certified(folder.path(), "getfem-0.3", &[]);
+    assert_eq!(code, 1, "{}", report["verdict"]);
+    let found = &report["diagnosis"][0]["findings"][0];
+    assert_eq!(found["name"], "contact/foot|rigid/friction-bound", "{}", report["diagnosis"]);
+    assert!((found["value"].as_f64().expect("a number") - 0.75).abs() < 1e-6, "{found}");
 }
