@@ -8,7 +8,7 @@ is, and what it converges to is the minimum of the problem and not of a regulari
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.sparse as sp
@@ -134,6 +134,24 @@ class CoupledDescent:
             best = min(best, worst)
         raise Failure(f"the friction of coupled jumps has not settled after {ROUNDS} rounds")
 
+    def improved(self, found: Minimum, forces: np.ndarray) -> tuple[Minimum, np.ndarray]:
+        """:meth:`Descent.improved`, and the forces that go with it."""
+        rows = self.rows
+
+        def minimise(change: Descent, w: np.ndarray) -> Minimum:
+            nonlocal forces
+            left = replace(rows, kink=rows.kink - rows.matrix @ np.concatenate(self.comm.allgather(w)))
+            moved, forces = CoupledDescent(change, left).minimise(float(np.finfo(float).tiny), forces * rows.length)
+            return moved
+
+        best = self.descent.improved(found, minimise)
+        return replace(best, gradient=best.gradient + self._along(forces * rows.length)), forces
+
+    def _along(self, forces: np.ndarray) -> np.ndarray:
+        """What forces on the rows do on the unknowns of this rank."""
+        begin, end = self.columns
+        return (self.rows.matrix.T @ forces)[begin:end]
+
     def _size(self, x: np.ndarray) -> float:
         """The largest of the displacements that the jumps are sums of."""
         used = np.unique(self.stretch.indices)
@@ -147,6 +165,4 @@ class CoupledDescent:
         # Scaling there and back may miss a bound by a rounding error.
         for bound in (it.upper, it.lower, np.where(it.rubs, it.kink, np.inf)):
             w = np.where(np.isfinite(bound) & (np.abs(w - bound) <= 4.0 * EPSILON * np.abs(bound)), bound, w)
-        begin, end = self.columns
-        along = (self.rows.matrix.T @ forces)[begin:end]
-        return Minimum(w, it.gradient(w) + along, found.rounding[: self.unknowns] / scale, found.left, steps, found.reason)
+        return Minimum(w, it.gradient(w) + self._along(forces), found.rounding[: self.unknowns] / scale, found.left, steps, found.reason)

@@ -20,6 +20,7 @@ from, row by row. A has a unit diagonal. Arrays are the share of this rank.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -151,18 +152,19 @@ class Descent:
             face.destroy()
             return Minimum(w, gradient, ROUNDING * unit, left, faces, NOTHING_LOWER if moves else AT_ROUNDING)
 
-    def improved(self, found: Minimum) -> Minimum:
+    def improved(self, found: Minimum, minimise: Callable[[Descent, np.ndarray], Minimum] | None = None) -> Minimum:
         """This minimum with a smaller residual, where a motion that costs next to no energy has gone far: its rounding
         error is large beside the errors in all other directions, bounds included, and hides them. These are corrected
-        with any further motion resisted (the proximal point method), by changes that are small again."""
+        with any further motion resisted (the proximal point method), by changes that are small again. ``minimise`` finds
+        the change, if there is more to it than this quadratic, from the descent for it and what is changed."""
         matrix = self.A.copy()
         matrix.shift(RESISTED)
-        w, gradient, unit = found.w, found.gradient, found.rounding / ROUNDING
-        best = found
+        best, w = found, found.w
+        gradient, unit = self._gradient(w, 0.0)
         for _ in range(IMPROVEMENTS):
             bounds = (self.lower - w, self.upper - w)
             change = Descent(matrix, -gradient, *bounds, unit / EPSILON, self.kink - w, self.weight)
-            moved = change.minimise(float(np.finfo(float).tiny))
+            moved = minimise(change, w) if minimise else change.minimise(float(np.finfo(float).tiny))
             there = np.where(moved.w == change.upper, self.upper, np.where(moved.w == change.lower, self.lower, w + moved.w))
             there = np.where(self.rubs & (moved.w == change.kink), self.kink, there)
             w = np.clip(there, self.lower, self.upper)

@@ -119,18 +119,15 @@ class Reduced:
 
     def _checked(self, descent: Descent, near: np.ndarray | float) -> tuple[Minimum, np.ndarray]:
         """The minimum found from bounds nearer than ``near``, improved where it fails its check; and forces of coupled rows."""
-        if self.constraints.coupled.rows:
-            found, forces = CoupledDescent(descent, self._coupled()).minimise(near)
-            self._check(descent, found)
-            return found, forces
-        found = descent.minimise(near)
+        coupled = CoupledDescent(descent, self._coupled()) if self.constraints.coupled.rows else None
+        found, forces = coupled.minimise(near) if coupled else (descent.minimise(near), np.zeros(0))
         try:
             self._check(descent, found)
         except Failure as failure:
             log(self.comm, f"{failure}; once more, with further motion resisted")
-            found = descent.improved(found)
+            found, forces = coupled.improved(found, forces) if coupled else (descent.improved(found), forces)
             self._check(descent, found)
-        return found, np.zeros(0)
+        return found, forces
 
     def _coupled(self) -> Rows:
         """The coupled rows in the scaled unknowns."""
