@@ -185,7 +185,8 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
 fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
     if space.problem().section().is_revolved() {
         mistakes::turned::terms(space, terms);
-        return mistakes::turned::trials(space).into_iter().chain(mistakes::contact::trials(space)).collect();
+        let own = mistakes::turned::trials(space).into_iter().chain(mistakes::sampled::trials(space));
+        return own.chain(mistakes::contact::trials(space)).collect();
     }
     mistakes::material::terms(space, terms);
     mistakes::initial::terms(space, terms);
@@ -197,6 +198,7 @@ fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
     trials.extend(mistakes::layer::trials(space));
     trials.extend(mistakes::moved::trial(space));
     trials.extend(mistakes::lumped::trials(space));
+    trials.extend(mistakes::sampled::trials(space));
     trials.extend(mistakes::local::trials(space));
     trials.extend(mistakes::integration::trials(space));
     trials.extend(mistakes::contact::trials(space));

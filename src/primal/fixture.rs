@@ -57,6 +57,7 @@ pub(crate) fn pressed_square() -> Problem {
         beds: Vec::new(),
         notes: Vec::new(),
         refinement: crate::problem::Refinement::default(),
+        counted: Default::default(),
         uncut: None,
     }
 }

@@ -10,7 +10,7 @@ use super::contact::friction::resist;
 use super::contact::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::contact::pair_up;
 use super::contact::softened;
-use super::{Bed, Condition, Note, Problem, ProblemError, Refinement, polynomial};
+use super::{Bed, Condition, Counted, Note, Problem, ProblemError, Refinement, polynomial};
 use crate::element::Section;
 use crate::mesh::MeshError;
 use crate::mesh::error::at;
@@ -179,7 +179,17 @@ impl Problem {
             }
         }
         let refinement = coarser.map_or_else(Refinement::default, |coarser| coarser.refinement);
-        let mut problem = Problem { scene, mesh, conditions, interfaces, beds, notes, refinement, uncut: None };
+        let mut problem = Problem {
+            scene,
+            mesh,
+            conditions,
+            interfaces,
+            beds,
+            notes,
+            refinement,
+            counted: Counted::Nearest,
+            uncut: None,
+        };
         let remarks = polynomial::remarks(&problem);
         problem.notes.retain(|note| !polynomial::is_remark(note));
         problem.notes.extend(remarks);

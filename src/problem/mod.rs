@@ -16,7 +16,7 @@ pub use contact::coulomb::follows_coulomb;
 pub use contact::direction::Direction;
 pub use contact::friction::{Friction, rubs};
 pub use error::ProblemError;
-pub use polynomial::Oscillation;
+pub use polynomial::{Counted, Oscillation};
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};
 
 use std::sync::Arc;
@@ -45,6 +45,8 @@ pub struct Problem {
     pub notes: Vec<Note>,
     /// Treatment of curves in refinement.
     pub refinement: Refinement,
+    /// What nodal forces of displacements have of polynomial tractions.
+    pub counted: Counted,
     /// The mesh as it was read or made, where contacts changed it; none of a mesh that was refined.
     pub uncut: Option<Arc<Uncut>>,
 }

@@ -6,6 +6,8 @@
 //! On a body of revolution tractions are weighted with the distance r from the axis: r times the remainder is orthogonal to all affine
 //! functions.
 
+use std::borrow::Cow;
+
 use super::build::section;
 use super::{EdgeWeight, Note, Problem};
 use crate::element::polynomial::side;
@@ -23,7 +25,45 @@ pub struct Oscillation {
     pub size: f64,
 }
 
+/// What the nodal forces of a displacement have of polynomial tractions.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Counted {
+    /// The nearest affine traction on every edge: the loads that both models of this program have.
+    #[default]
+    Nearest,
+    /// The polynomial, which other programs are given.
+    Whole,
+}
+
 impl Problem {
+    /// This problem for a displacement of another program, whose loads are the polynomials.
+    pub fn with_whole_tractions(&self) -> Cow<'_, Problem> {
+        match self.has_polynomial_tractions() {
+            true => Cow::Owned(Problem { counted: Counted::Whole, ..self.clone() }),
+            false => Cow::Borrowed(self),
+        }
+    }
+
+    /// Bernstein coefficients of a function on edge `e` times the weight of the section.
+    pub fn times_weight(&self, e: usize, f: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        times(&EdgeWeight::on(self.section(), &self.mesh, e), f)
+    }
+
+    /// Bernstein coefficients of the traction on every edge that has one, from its first vertex to its second, as nodal forces count it.
+    pub fn pressed_edges(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
+        let mut edges: Vec<_> = self.tractions().map(|(e, ends)| (e, ends.to_vec())).collect();
+        if self.counted == Counted::Nearest {
+            return edges;
+        }
+        for traction in self.scene.tractions.iter().filter(|traction| !traction.terms.is_empty()) {
+            let named = self.mesh.boundary(&traction.on);
+            for (e, coefficients) in edges.iter_mut().filter(|(e, _)| named.contains(e)) {
+                *coefficients = whole(&self.scene, &self.mesh, *e, traction);
+            }
+        }
+        edges
+    }
+
     /// True if a traction of the scene is of higher degree than one.
     pub fn has_polynomial_tractions(&self) -> bool {
         self.scene.tractions.iter().any(|traction| !traction.terms.is_empty())
@@ -38,12 +78,9 @@ impl Problem {
                     let whole = along(&self.scene, &self.mesh, edge, &traction.terms);
                     let weight = EdgeWeight::on(self.section(), &self.mesh, edge);
                     let nearest = nearest(&whole, &weight);
-                    let [x, y] = [0, 1].map(|c| {
-                        let linear = side::linear([nearest[0][c], nearest[1][c]], whole.len() - 1);
-                        weight.times(&whole.iter().zip(linear).map(|(p, linear)| p[c] - linear).collect::<Vec<_>>())
-                    });
+                    let less = nearest.map(|end| end.map(|p| -p));
                     let size = whole.iter().flatten().fold(0.0_f64, |m, p| m.max(p.abs())) * weight.largest();
-                    Oscillation { edge, rest: x.into_iter().zip(y).map(|(x, y)| [x, y]).collect(), size }
+                    Oscillation { edge, rest: times(&weight, &plus(whole, less)), size }
                 })
                 .collect()
         };
@@ -53,18 +90,43 @@ impl Problem {
 
 /// P at the ends of edge `e`: of the affine traction that is nearest to the one that is given.
 pub(super) fn ends(scene: &Scene, mesh: &Triangulation, e: usize, traction: &Traction) -> [[f64; 2]; 2] {
-    let own = match traction.load {
-        Load::Pressure(p) => {
-            let (_, normal) = mesh.edge_frame(e);
-            [normal.map(|n| 0.0 - p * n); 2]
-        }
-        Load::Affine(load) => mesh.edges[e].vertices.map(|v| load.at(mesh.points[v])),
-    };
+    let own = affine(mesh, e, traction);
     if traction.terms.is_empty() {
         return own;
     }
     let more = nearest(&along(scene, mesh, e, &traction.terms), &EdgeWeight::on(section(scene), mesh, e));
     [0, 1].map(|end| [0, 1].map(|c| own[end][c] + more[end][c]))
+}
+
+/// The affine part of a traction at the ends of edge `e`.
+fn affine(mesh: &Triangulation, e: usize, traction: &Traction) -> [[f64; 2]; 2] {
+    match traction.load {
+        Load::Pressure(p) => {
+            let (_, normal) = mesh.edge_frame(e);
+            [normal.map(|n| 0.0 - p * n); 2]
+        }
+        Load::Affine(load) => mesh.edges[e].vertices.map(|v| load.at(mesh.points[v])),
+    }
+}
+
+/// Bernstein coefficients of a traction along edge `e`.
+fn whole(scene: &Scene, mesh: &Triangulation, e: usize, traction: &Traction) -> Vec<[f64; 2]> {
+    plus(along(scene, mesh, e, &traction.terms), affine(mesh, e, traction))
+}
+
+/// The sum of a polynomial and the affine function with values `ends` at the ends.
+fn plus(mut f: Vec<[f64; 2]>, [a, b]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
+    for c in 0..2 {
+        let linear = side::linear([a[c], b[c]], f.len() - 1);
+        f.iter_mut().zip(linear).for_each(|(sum, linear)| sum[c] += linear);
+    }
+    f
+}
+
+/// Coefficients of a function times the weight.
+fn times(weight: &EdgeWeight, f: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let [x, y] = [0, 1].map(|c| weight.times(&f.iter().map(|p| p[c]).collect::<Vec<_>>()));
+    x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
 }
 
 /// Bernstein coefficients of terms along edge `e`.

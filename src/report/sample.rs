@@ -171,6 +171,7 @@ fn two_blocks(n: usize) -> Problem {
         beds: Vec::new(),
         notes,
         refinement: crate::problem::Refinement::default(),
+        counted: Default::default(),
         uncut: None,
     }
 }

@@ -37,33 +37,20 @@ pub fn claim(
     weak: bool,
     allow: &Allowances,
 ) -> Result<Claim, NoUpperBound> {
-    if is_of_polynomials(problem, &judged.candidate) {
-        return Ok(not_held(problem, POLYNOMIAL));
-    }
     let problem = &*problem.softened();
     let own = problem.bounded_by_contact_forces();
+    let own = own.with_whole_tractions();
     let solution = Solution::new(&own, &judged.candidate, judged.field.potential.stored())?;
     let solution = solution.within(Extent::of(problem, bracket)).with_weak_contact(weak);
     let mut checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
     let diagnosis = checks
         .iter()
         .any(|c| (!c.passed && c.decides() && c.value.is_some()) || c.excused)
-        .then(|| explained(problem, judged, &solution, bracket));
+        .then(|| explained(&own, judged, &solution, bracket));
     let notes = weak_notes(&solution, || energies(problem, judged));
     let at_nodes = checks.iter_mut().filter(|check| check.name.ends_with("/penetration-at-nodes"));
     at_nodes.zip(&notes).for_each(|(check, note)| check.why.clone_from(&note.text));
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), notes, checks })
-}
-
-/// Why a field is not held against the loads of a polynomial traction.
-const POLYNOMIAL: &str = "A traction has `terms`, and the field is of degree 2 or more: the nodal forces of another program are those of the \
-                          polynomial, and of the nearest affine tractions here. Leave out --solution: the energy of the field is held \
-                          against the bracket all the same.";
-
-/// True if the nodal forces of a field of this degree are others for a polynomial than for its nearest affine tractions: what is left of
-/// it does no work on traces of degree 1.
-fn is_of_polynomials(problem: &Problem, candidate: &Candidate) -> bool {
-    problem.has_polynomial_tractions() && candidate.degree > 1
 }
 
 /// A claim that is held against nothing, for this reason.
@@ -85,8 +72,9 @@ fn weak_notes(solution: &Solution<'_>, energies: impl Fn() -> Energies) -> Vec<N
 /// holds neither way.
 pub fn weak_contact(problem: &Problem, judged: &Judged) -> Option<Vec<Note>> {
     let problem = &*problem.softened();
+    let own = problem.with_whole_tractions();
     let solution =
-        Solution::new(problem, &judged.candidate, judged.field.potential.stored()).ok()?.with_weak_contact(true);
+        Solution::new(&own, &judged.candidate, judged.field.potential.stored()).ok()?.with_weak_contact(true);
     let contacts = (0..problem.interfaces.len()).all(|i| solution.is_met(i) || solution.holds_weakly(i).is_some());
     (judged.violation.support <= ADMISSIBLE && contacts).then(|| weak_notes(&solution, || energies(problem, judged)))
 }
@@ -109,9 +97,7 @@ pub fn claim_before_contact(
                    on the mesh of `hypercircle mesh`, where they match.";
         return Ok(not_held(problem, why));
     }
-    if is_of_polynomials(problem, own) {
-        return Ok(not_held(problem, POLYNOMIAL));
-    }
+    let before = &*before.with_whole_tractions();
     // Which rule a program used on quadrilaterals shows once its contact forces are taken away.
     let made = |points| {
         let solution = Solution::by_rule(before, own, judged.field.potential.stored(), points)?

@@ -154,7 +154,7 @@ impl NodalForces {
             }
         }
         forces.add_springs(problem, candidate.degree, Functions::Values, |node| candidate.value(node));
-        forces.add_tractions(problem, candidate.degree);
+        forces.add_tractions(problem, candidate.degree, Functions::Values);
         forces.take_loads();
         forces
     }

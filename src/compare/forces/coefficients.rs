@@ -6,7 +6,7 @@ use crate::element::PlainDisplacement;
 use crate::element::displacement::plain;
 use crate::element::geometry::gradients;
 use crate::element::polynomial::triangle;
-use crate::problem::{Condition, Problem};
+use crate::problem::Problem;
 
 /// One polynomial and its partner in the gradient of another: ∇B_α = k Σ_i B_{α − e_i} ∇l_i.
 struct Term {
@@ -98,24 +98,8 @@ impl NodalForces {
             }
         }
         forces.add_springs(problem, k, Functions::Coefficients, |node| field.values()[node]);
-        forces.press(problem, k);
+        forces.add_tractions(problem, k, Functions::Coefficients);
         forces.take_loads();
         forces
-    }
-
-    /// Adds ∫ P B_j over every edge with a traction: (k + 1 − j) and (j + 1) parts of its values at the ends.
-    fn press(&mut self, problem: &Problem, k: usize) {
-        let mesh = &problem.mesh;
-        for (e, condition) in problem.conditions.iter().enumerate() {
-            let Condition::Traction([pa, pb]) = condition else { continue };
-            let part = problem.scene.thickness * mesh.edge_frame(e).0 / ((k + 1) * (k + 2)) as f64;
-            let [a, b] = mesh.edges[e].vertices;
-            let inside = mesh.points.len() + e * (k - 1);
-            for (j, node) in std::iter::once(a).chain(inside..inside + k - 1).chain([b]).enumerate() {
-                let [first, last] = [k + 1 - j, j + 1].map(|w| part * w as f64);
-                let load = &mut self.load[node];
-                *load = [0, 1].map(|c| load[c] + first * pa[c] + last * pb[c]);
-            }
-        }
     }
 }

@@ -4,12 +4,13 @@ pub mod cells;
 pub(super) mod coefficients;
 pub(super) mod quadrilaterals;
 pub mod springs;
+pub mod tractions;
 pub mod turned;
 
 use crate::bounds::{Hold, Holds, Nodes};
 use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
-use crate::problem::{Condition, Problem};
+use crate::problem::Problem;
 use springs::Functions;
 
 /// Barycentric coordinates of the midpoints of the edges opposite the corners, as [`shape_gradients`] counts them.
@@ -38,7 +39,7 @@ impl NodalForces {
         let mut forces = Self::on(problem, degree, vertex, middle, |_| true);
         let value = |node: usize| *vertex.get(node).unwrap_or_else(|| &middle[node - vertex.len()]);
         forces.add_springs(problem, degree, Functions::Values, value);
-        forces.add_tractions(problem, degree);
+        forces.add_tractions(problem, degree, Functions::Values);
         forces.take_loads();
         forces
     }
@@ -158,28 +159,6 @@ impl NodalForces {
             self.left[node][0] -= load[0];
             self.left[node][1] -= load[1];
             self.size[node] += load[0].hypot(load[1]);
-        }
-    }
-
-    pub(in crate::compare) fn add_tractions(&mut self, problem: &Problem, degree: usize) {
-        let mesh = &problem.mesh;
-        for (e, condition) in problem.conditions.iter().enumerate() {
-            let Condition::Traction([pa, pb]) = condition else { continue };
-            let part = problem.scene.thickness * mesh.edge_frame(e).0 / 6.0;
-            let [a, b] = mesh.edges[e].vertices;
-            for c in 0..2 {
-                match degree {
-                    2 => {
-                        self.load[a][c] += part * pa[c];
-                        self.load[b][c] += part * pb[c];
-                        self.load[mesh.points.len() + e][c] += 2.0 * part * (pa[c] + pb[c]);
-                    }
-                    _ => {
-                        self.load[a][c] += part * (2.0 * pa[c] + pb[c]);
-                        self.load[b][c] += part * (pa[c] + 2.0 * pb[c]);
-                    }
-                }
-            }
         }
     }
 

@@ -61,7 +61,7 @@ impl NodalForces {
             }
         }
         let springs = forces.add_springs(problem, k, Functions::Values, |node| values[node]);
-        forces.add_tractions(problem, k);
+        forces.add_tractions(problem, k, Functions::Values);
         let products = || forces.load.iter().zip(values).map(|(f, u)| f[0] * u[0] + f[1] * u[1]);
         let work = products().sum();
         let magnitude = strain + springs + products().map(f64::abs).sum::<f64>();

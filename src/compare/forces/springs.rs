@@ -7,7 +7,7 @@ use crate::vector::dot;
 
 /// The functions that belong to the nodes of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::compare) enum Functions {
+pub enum Functions {
     /// Values at vertices, and for degree 2 at the middles of edges.
     Values,
     /// Bernstein coefficients.
@@ -40,6 +40,14 @@ impl Functions {
         }
     }
 
+    /// ∫ f φ_i of the functions of a degree, from those of the Bernstein polynomials of that degree.
+    pub fn moments(self, moments: Vec<f64>) -> Vec<f64> {
+        match (self, &moments[..]) {
+            (Functions::Values, [a, middle, b]) => vec![a - 0.5 * middle, 2.0 * middle, b - 0.5 * middle],
+            _ => moments,
+        }
+    }
+
     /// Bernstein coefficients of the jump with these values less the gap with those coefficients.
     fn beyond(self, jump: &[f64], gap: &[f64]) -> Vec<f64> {
         let own = match (self, jump) {
@@ -53,11 +61,7 @@ impl Functions {
 
     /// ∫ d₊ φ_i on an edge of length one whose points have the weight `weight`, for all functions of degree `degree`.
     fn forces(self, weight: EdgeWeight, beyond: &[f64], degree: usize) -> Vec<f64> {
-        let moments = positive::moments(beyond, degree, weight.ends());
-        match (self, &moments[..]) {
-            (Functions::Values, [a, middle, b]) => vec![a - 0.5 * middle, 2.0 * middle, b - 0.5 * middle],
-            _ => moments,
-        }
+        self.moments(positive::moments(beyond, degree, weight.ends()))
     }
 }
 

@@ -11,8 +11,6 @@ use crate::bounds::Potential;
 use crate::compare::candidate::Candidate;
 use crate::element::Material;
 use crate::element::geometry::gradients;
-use crate::element::polynomial::quadrature::segment_rule;
-use crate::element::polynomial::side;
 use crate::element::polynomial::symmetric_rules::symmetric_rules;
 use crate::element::revolved::{NEAR, rule};
 use crate::problem::Problem;
@@ -213,9 +211,7 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
             (0..2).for_each(|c| forces.load[node][c] += weight * value * force[c]);
         }
     });
-    for (e, ends) in problem.tractions() {
-        add_traction(problem, candidate, (e, &problem.weighted(e, ends)), &mut forces.load);
-    }
+    forces.add_tractions(problem, candidate.degree, Functions::Values);
     let springs = forces.add_springs(problem, candidate.degree, Functions::Values, |node| candidate.value(node));
     forces.take_loads();
     let mut work = 0.0;
@@ -228,32 +224,4 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
     }
     let magnitude = strain + springs + rounded;
     (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs, friction: 0.0 })
-}
-
-/// Adds ∫ T·φ along an edge, T by its Bernstein coefficients.
-pub fn add_traction(
-    problem: &Problem,
-    candidate: &Candidate,
-    (e, traction): (usize, &[[f64; 2]]),
-    load: &mut [[f64; 2]],
-) {
-    let mesh = &problem.mesh;
-    let [a, b] = mesh.edges[e].vertices;
-    let (length, _) = mesh.edge_frame(e);
-    let [across, along] = [0, 1].map(|c| traction.iter().map(|t| t[c]).collect::<Vec<f64>>());
-    for &(s, weight) in segment_rule(4) {
-        let weight = weight * problem.scene.thickness * length;
-        let traction = [side::value(&across, s), side::value(&along, s)];
-        let functions = match candidate.degree {
-            2 => vec![
-                (a, (1.0 - s) * (1.0 - 2.0 * s)),
-                (b, s * (2.0 * s - 1.0)),
-                (mesh.points.len() + e, 4.0 * s * (1.0 - s)),
-            ],
-            _ => vec![(a, 1.0 - s), (b, s)],
-        };
-        for (node, value) in functions {
-            (0..2).for_each(|c| load[node][c] += weight * value * traction[c]);
-        }
-    }
 }

@@ -1,12 +1,12 @@
 //! Wrong loads.
 
-use crate::compare::forces::cells;
+use crate::compare::forces::springs::Functions;
+use crate::compare::forces::{cells, tractions};
 use crate::diagnose::fit::Terms;
 use crate::diagnose::space::Space;
 use crate::diagnose::words::{factor, near, number};
 use crate::diagnose::{Finding, Trial};
 use crate::load::{Affine, BodyForce};
-use crate::problem::Condition;
 use crate::scene::Body;
 
 /// Coefficients of components that are smaller than this are none.
@@ -175,25 +175,11 @@ fn components(on: &str, given: [bool; 2], parts: &[[usize; 2]], x: &[f64]) -> Ve
 
 /// Nodal forces of the traction on one boundary.
 fn of_traction(space: &Space<'_>, on: &str) -> Vec<[f64; 2]> {
-    let (problem, mesh) = (space.problem(), &space.problem().mesh);
-    let vertices = mesh.points.len();
+    let problem = space.problem();
+    let (named, degree) = (problem.mesh.boundary(on), space.solution.candidate.degree);
     let mut forces = vec![[0.0; 2]; space.count()];
-    let quadratic = space.count() > vertices;
-    for e in mesh.boundary(on) {
-        let Condition::Traction([pa, pb]) = problem.conditions[e] else { continue };
-        let part = problem.scene.thickness * mesh.edge_frame(e).0 / 6.0;
-        let [a, b] = mesh.edges[e].vertices;
-        for c in 0..2 {
-            let [at_a, at_b] = match quadratic {
-                true => [pa[c], pb[c]],
-                false => [2.0 * pa[c] + pb[c], pa[c] + 2.0 * pb[c]],
-            };
-            forces[a][c] += part * at_a;
-            forces[b][c] += part * at_b;
-            if quadratic {
-                forces[vertices + e][c] += 2.0 * part * (pa[c] + pb[c]);
-            }
-        }
+    for (e, traction) in problem.pressed_edges().iter().filter(|(e, _)| named.contains(e)) {
+        tractions::add(problem, (*e, traction), degree, Functions::Values, &mut forces);
     }
     forces
 }

@@ -1,8 +1,11 @@
 //! Loads that are shared among nodes by hand where shape functions would share them.
 
+use crate::compare::forces::springs::Functions;
+use crate::compare::forces::tractions as edges;
 use crate::diagnose::space::Space;
 use crate::diagnose::{Finding, Trial};
-use crate::problem::{Condition, Problem};
+use crate::element::polynomial::side;
+use crate::problem::Problem;
 
 /// How a load is shared.
 #[derive(Clone, Copy)]
@@ -65,25 +68,19 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
 fn tractions(space: &Space<'_>, shares: &Shares) -> Vec<[f64; 2]> {
     let problem: &Problem = space.problem();
     let mesh = &problem.mesh;
-    let quadratic = space.count() > mesh.points.len();
     let mut forces = vec![[0.0; 2]; space.count()];
-    for (e, condition) in problem.conditions.iter().enumerate() {
-        let Condition::Traction(values) = condition else { continue };
+    let degree = space.solution.candidate.degree;
+    for (e, traction) in problem.pressed_edges() {
+        edges::add(problem, (e, &traction), degree, Functions::Values, &mut forces);
         let length = problem.scene.thickness * mesh.edge_frame(e).0;
-        let [a, b] = mesh.edges[e].vertices;
-        let nodes = [Some(a), Some(b), quadratic.then_some(mesh.points.len() + e)];
+        let middle = if degree == 2 { Some((mesh.points.len() + e, 2)) } else { None };
+        let ends = mesh.edges[e].vertices.into_iter().zip([0, 1]);
         for c in 0..2 {
-            let [pa, pb] = values.map(|p| p[c]);
-            let mean = 0.5 * (pa + pb);
-            let consistent = match quadratic {
-                true => [pa / 6.0, pb / 6.0, 2.0 / 3.0 * mean],
-                false => [(2.0 * pa + pb) / 6.0, (pa + 2.0 * pb) / 6.0, 0.0],
-            };
-            let given = if shares.own { [pa, pb, mean] } else { [mean; 3] };
-            for k in 0..3 {
-                if let Some(node) = nodes[k] {
-                    forces[node][c] += length * (consistent[k] - shares.edge[k] * given[k]);
-                }
+            let along: Vec<f64> = traction.iter().map(|t| t[c]).collect();
+            let mean = along.iter().sum::<f64>() / along.len() as f64;
+            let given = if shares.own { [0.0, 1.0, 0.5].map(|s| side::value(&along, s)) } else { [mean; 3] };
+            for (node, k) in ends.clone().chain(middle) {
+                forces[node][c] -= length * shares.edge[k] * given[k];
             }
         }
     }

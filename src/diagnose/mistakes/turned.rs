@@ -4,8 +4,10 @@ use std::f64::consts::TAU;
 
 use super::material;
 use crate::bounds::Sum;
+use crate::compare::forces::springs::Functions;
+use crate::compare::forces::tractions;
 use crate::compare::forces::turned;
-use crate::compare::forces::turned::{Rule, add_traction};
+use crate::compare::forces::turned::Rule;
 use crate::diagnose::Finding;
 use crate::diagnose::Trial;
 use crate::diagnose::fit::Terms;
@@ -184,11 +186,11 @@ impl<'a> Columns<'a> {
     fn loads(&self, on: Option<&str>, weighted: bool) -> Vec<[f64; 2]> {
         let (problem, candidate) = (self.problem(), self.space.solution.candidate);
         let mut loads = vec![[0.0; 2]; self.space.count()];
-        for (e, ends) in problem.tractions() {
+        for (e, traction) in problem.pressed_edges() {
             if on.is_none_or(|on| problem.mesh.boundary(on).contains(&e)) {
-                let mean = || ends.map(|end| end.map(|t| self.mean * t)).to_vec();
-                let traction = if weighted { problem.weighted(e, ends) } else { mean() };
-                add_traction(problem, candidate, (e, &traction), &mut loads);
+                let mean = || traction.iter().map(|t| t.map(|t| self.mean * t)).collect();
+                let own = if weighted { problem.times_weight(e, &traction) } else { mean() };
+                tractions::add(problem, (e, &own), candidate.degree, Functions::Values, &mut loads);
             }
         }
         if on.is_none() {

@@ -233,6 +233,7 @@ impl Build {
             beds: Vec::new(),
             notes: Vec::new(),
             refinement: Default::default(),
+            counted: Default::default(),
             uncut: None,
         }
     }

@@ -240,6 +240,7 @@ impl Setup {
             beds: Vec::new(),
             notes: Vec::new(),
             refinement: Default::default(),
+            counted: Default::default(),
             uncut: None,
         }
     }

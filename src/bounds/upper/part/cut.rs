@@ -75,6 +75,7 @@ impl Cut {
             beds: Vec::new(),
             notes: Vec::new(),
             refinement: problem.refinement,
+            counted: problem.counted,
             uncut: None,
         }
     }

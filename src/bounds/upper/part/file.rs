@@ -12,7 +12,7 @@ use crate::elasticity::{Elasticity, Initial, NUMBERS};
 use crate::element::{SideValues, StressField};
 use crate::load::{Affine, BodyForce, Rotation};
 use crate::mesh::{Edge, FileCells, Triangulation};
-use crate::problem::{Bow, Condition, ContactPair, Direction, Interface, Problem, Refinement};
+use crate::problem::{Bow, Condition, ContactPair, Counted, Direction, Interface, Problem, Refinement};
 use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 impl Part {
@@ -58,6 +58,7 @@ impl Part {
             beds: Vec::new(),
             notes: Vec::new(),
             refinement: Refinement::default(),
+            counted: Counted::default(),
             uncut: None,
         };
         let vertices = read_holds(&mut from)?;
