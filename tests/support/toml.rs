@@ -87,13 +87,20 @@ impl Toml {
         self
     }
 
-    /// This scene with each table of a contact replaced by the result of `change`.
-    pub fn with_contacts(&self, mut change: impl FnMut(&str) -> String) -> Self {
+    /// This scene with each table of a condition, as `contacts`, replaced by the result of `change`.
+    pub fn with_each(&self, condition: &str, mut change: impl FnMut(&str) -> String) -> Self {
         let text = format!("\n{}", self.conditions);
+        let header = format!("[[{condition}]]");
         let tables = text.split("\n[[").skip(1).map(|table| format!("[[{}", table.trim_end()));
-        let changed = tables.map(|table| if table.starts_with("[[contacts]]") { change(&table) } else { table });
+        let changed = tables.map(|table| if table.starts_with(&header) { change(&table) } else { table });
         let conditions = changed.map(|table| table + "\n").collect();
         Toml { conditions, ..self.clone() }
+    }
+
+    /// The largest coordinate of its polygons.
+    pub fn reach(&self) -> f64 {
+        let rows = self.polygons.lines().filter(|line| line.starts_with("points"));
+        rows.flat_map(numbers).fold(0.0, |most, x| x.abs().max(most))
     }
 
     pub fn clamp(self, on: &str) -> Self {
@@ -147,4 +154,9 @@ impl Toml {
         text.push_str(&self.conditions);
         text
     }
+}
+
+/// The numbers in a line of a scene file.
+pub fn numbers(line: &str) -> impl Iterator<Item = f64> + '_ {
+    line.split(['=', ',', '[', ']', ' ']).filter_map(|word| word.parse().ok())
 }

@@ -14,6 +14,7 @@ mod mixed;
 mod moved;
 mod msh;
 mod obstacles;
+mod powers;
 mod rough;
 pub mod stack;
 mod turned;
@@ -69,7 +70,7 @@ const FAMILIES: [(&str, usize, Family); 3] =
     [("blocks", 10, lattice::blocks), ("shapes", 7, lattice::shapes), ("stack", 3, stack::made)];
 
 /// Families that came later take seeds from all others, each with this probability, so that the rest stay what they are.
-const LATER: [(&str, f64, Family); 10] = [
+const LATER: [(&str, f64, Family); 11] = [
     ("crowd", 0.1, lattice::crowd),
     ("curved", 0.15, curved::curved),
     ("moved", 0.1, moved::moved),
@@ -80,6 +81,7 @@ const LATER: [(&str, f64, Family); 10] = [
     ("rough", 0.12, rough::rough),
     ("mixed", 0.2, mixed::mixed),
     ("turned", 0.1, turned::turned),
+    ("powers", 0.1, powers::powers),
 ];
 
 /// The scene of a seed in one family.

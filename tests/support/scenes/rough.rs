@@ -19,7 +19,7 @@ pub fn rough(random: &mut Random) -> Made {
 /// Friction of the size of `traction` on contacts of about this `length`.
 fn rubbed(random: &mut Random, toml: &Toml, traction: f64, length: f64) -> Toml {
     let often = random.pick(&[0.6, 1.0]);
-    toml.with_contacts(|table| {
+    toml.with_each("contacts", |table| {
         if !random.chance(often) {
             return table.to_owned();
         }

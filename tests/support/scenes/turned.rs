@@ -118,7 +118,7 @@ fn between(toml: Toml, random: &mut Random, below: &str, foot: &str) -> Toml {
 
 /// Some of the contacts elastic, some with friction, along sides that reach to about this `radius`.
 fn touching(random: &mut Random, toml: &Toml, radius: f64) -> Toml {
-    toml.with_contacts(|table| {
+    toml.with_each("contacts", |table| {
         let law = match random.below(6) {
             0 => format!("stiffness = {:?}", random.magnitude(-0.5, 3.0)),
             1 => format!("friction = {{ bound = {:?} }}", random.magnitude(-3.5, 0.0)),
