@@ -34,8 +34,7 @@ def whole_numbers(blocks):
 
 def read_nastran(source):
     """A Nastran deck; one without its first words, as Gmsh writes it, is bulk data from its first line on."""
-    import meshio
-
+    meshio = load_meshio()
     with open(source, encoding="utf-8", errors="replace") as file:
         text = file.read()
     if any(line.strip().upper().startswith("BEGIN BULK") for line in text.splitlines()):
@@ -49,8 +48,7 @@ def read_nastran(source):
 
 def from_meshio(source):
     """Points, blocks, node sets and numbers of groups, as meshio has them."""
-    import meshio
-
+    meshio = load_meshio()
     mesh = meshio.read(source) if not source.lower().endswith(NASTRAN) else read_nastran(source)
     blocks = {name: whole_numbers(blocks) for name, blocks in mesh.cell_data.items() if name not in NO_GROUPS}
     whole = [name for name, found in blocks.items() if found is not None]
@@ -151,7 +149,7 @@ def main():
             sys.exit(45)
     else:
         try:
-            import meshio  # noqa: F401
+            load_meshio()
         except ImportError as error:
             print(error, file=sys.stderr)
             sys.exit(44)

@@ -14,6 +14,7 @@ use crate::mesh::{MeshError, RawMesh};
 use crate::scene::Note;
 
 const SCRIPT: &str = concat!(
+    include_str!("readers/lean.py"),
     include_str!("readers/found.py"),
     include_str!("readers/unv.py"),
     include_str!("readers/text.py"),

@@ -11,6 +11,7 @@ use crate::mesh::files::meshio;
 use crate::study::dossier::provenance::hash;
 
 const SCRIPT: &str = concat!(
+    include_str!("../../mesh/files/readers/lean.py"),
     include_str!("../../mesh/files/readers/found.py"),
     include_str!("../../mesh/files/readers/unv.py"),
     include_str!("../../mesh/files/readers/text.py"),

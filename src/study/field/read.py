@@ -8,7 +8,7 @@ import re
 import sys
 
 try:
-    import meshio
+    meshio = load_meshio()
 except ImportError as error:
     print(error, file=sys.stderr)
     sys.exit(44)
