@@ -12,7 +12,7 @@ use std::time::Duration;
 use clap::Parser;
 use support::scenes::{sample, sample_of};
 use support::trial::table::{groups, head, row};
-use support::trial::{Program, Trial};
+use support::trial::{ADAPTIVE, Program, Trial};
 
 /// Solves random scenes in every way, and fails where the answers cannot all be true.
 #[derive(Parser)]
@@ -72,7 +72,7 @@ fn main() -> ExitCode {
                     if !seeds.contains(&seed) {
                         break;
                     }
-                    let trial = Trial::of(&sample(seed), &program, &args.out, !args.solve_only);
+                    let trial = Trial::of(&sample(seed), &program, &args.out, &ADAPTIVE, !args.solve_only);
                     println!("{}", row(&trial));
                     trials.lock().expect("no other thread panicked").push(trial);
                 }

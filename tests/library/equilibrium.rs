@@ -286,7 +286,7 @@ fn inside_the_border_an_equilibrium_is_found() {
 fn inside_the_border_every_scene_is_solved() {
     let mut refused = 0;
     for case in cases() {
-        for excess in [-1e-6, -1e-5, -1e-4, -1e-3, -0.1] {
+        for excess in [-1e-6, -1e-4, -0.1] {
             let goal = Goal { max_triangles: Some(1000), ..Goal::new(1e6) };
             let adapted =
                 adapt(problem(&(case.scene)(excess)), &Condensed::default(), &Options::default(), &goal, |_| ());

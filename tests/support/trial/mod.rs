@@ -28,14 +28,14 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Solves `sample` in every way; `models` adds `verify`. Files appear in `folder`, and stay there where something is
-    /// wrong.
-    pub fn of(sample: &Sample, program: &Program, folder: &Path, models: bool) -> Trial {
+    /// Solves `sample` by every method, finer, by these adaptive ways, and with `models` by `verify`. Files appear in `folder`, and
+    /// stay there where something is wrong.
+    pub fn of(sample: &Sample, program: &Program, folder: &Path, adaptive: &[&'static str], models: bool) -> Trial {
         let scene = sample.write(folder);
         let results = folder.join(format!("seed-{}", sample.seed));
         let mut ways: Vec<Way> = METHODS.map(Way::Method).to_vec();
         ways.push(Way::Finer);
-        ways.extend(ADAPTIVE.map(Way::Adaptive));
+        ways.extend(adaptive.iter().copied().map(Way::Adaptive));
         ways.extend(models.then_some(Way::Verify));
         let runs: Vec<(Way, Ended)> = ways.into_iter().map(|way| (way, program.run(way, &scene, &results))).collect();
         let faults = faults(&runs, sample.rounding, sample.rounds);

@@ -256,29 +256,26 @@ pub(in crate::bounds::upper) mod tests {
     #[test]
     fn threads_move_patches_to_the_last_digit_as_one_after_the_other() {
         let problem = problem();
-        for degree in [2, 3] {
-            let nodes = Nodes::new(problem.mesh.points.len(), problem.mesh.edges.iter().map(|_| degree));
-            let rows = rows(&problem, &nodes);
-            let held = holds(&problem).expect("supports agree");
-            let model = Model::new(&problem, &held, &nodes, &rows, Pull::SCENE);
-            let mut start = NodalValues::zeros(nodes.clone());
-            for (n, (value, hold)) in start.values.iter_mut().zip(held.of_nodes(&nodes)).enumerate() {
-                *value = hold.impose([1e-2 * (n as f64).sin(), 1e-2 * (3.0 * n as f64).cos()]);
-            }
-            let relaxed = |alone: bool| {
-                let mut patches = Patches { together: LEAST_SHARED, ..Patches::new(&problem, &nodes) };
-                assert!(patches.fronts.iter().flat_map(Fronts::iter).any(|front| front.len() >= 2 * patches.together));
-                patches.fronts = patches.fronts.take().filter(|_| !alone);
-                let mut values = start.values.clone();
-                let gains: Vec<f64> = [false, true, false]
-                    .map(|back| patches.sweep(&model, None, back, 1e-12, &mut values, &Whole))
-                    .into();
-                (gains, values)
-            };
-            let (alone, shared) = in_threads(|| (relaxed(true), relaxed(false)));
-            assert!(alone.0[0] > 0.0);
-            assert_eq!(alone, shared);
+        let nodes = Nodes::new(problem.mesh.points.len(), problem.mesh.edges.iter().map(|_| 3));
+        let rows = rows(&problem, &nodes);
+        let held = holds(&problem).expect("supports agree");
+        let model = Model::new(&problem, &held, &nodes, &rows, Pull::SCENE);
+        let mut start = NodalValues::zeros(nodes.clone());
+        for (n, (value, hold)) in start.values.iter_mut().zip(held.of_nodes(&nodes)).enumerate() {
+            *value = hold.impose([1e-2 * (n as f64).sin(), 1e-2 * (3.0 * n as f64).cos()]);
         }
+        let relaxed = |alone: bool| {
+            let mut patches = Patches { together: LEAST_SHARED, ..Patches::new(&problem, &nodes) };
+            assert!(patches.fronts.iter().flat_map(Fronts::iter).any(|front| front.len() >= 2 * patches.together));
+            patches.fronts = patches.fronts.take().filter(|_| !alone);
+            let mut values = start.values.clone();
+            let gains: Vec<f64> =
+                [false, true, false].map(|back| patches.sweep(&model, None, back, 1e-12, &mut values, &Whole)).into();
+            (gains, values)
+        };
+        let (alone, shared) = in_threads(|| (relaxed(true), relaxed(false)));
+        assert!(alone.0[0] > 0.0);
+        assert_eq!(alone, shared);
     }
 
     /// By what patches read and move, node by node.
