@@ -17,7 +17,7 @@ from petsc4py import PETSc
 
 from hypercircle_process import Failure, log
 
-from .descent import EPSILON, Descent, Minimum
+from .descent import CLOSED, EPSILON, Descent, Minimum
 
 STIFF, STIFFER, STIFFEST = 100.0, 30.0, 1e7
 """Stiffness of the springs beside the unit diagonal of A; by how much it grows where rounds gain little; and the most it is."""
@@ -141,7 +141,7 @@ class CoupledDescent:
         def minimise(change: Descent, w: np.ndarray) -> Minimum:
             nonlocal forces
             left = replace(rows, kink=rows.kink - rows.matrix @ np.concatenate(self.comm.allgather(w)))
-            moved, forces = CoupledDescent(change, left).minimise(float(np.finfo(float).tiny), forces * rows.length)
+            moved, forces = CoupledDescent(change, left).minimise(CLOSED, forces * rows.length)
             return moved
 
         best = self.descent.improved(found, minimise)

@@ -58,6 +58,9 @@ IDLE = 3
 RESISTED, IMPROVEMENTS = 1e-6, 3
 """Added to the unit diagonal where further motion is resisted, and how often that is done."""
 
+CLOSED = float(np.finfo(float).tiny)
+"""Only bounds nearer than this hold at the start: those that are met already."""
+
 AT_ROUNDING, NOTHING_LOWER = 2, 4
 """Why the method stopped: the gradient is down to its rounding, or no step lowers the energy measurably."""
 
@@ -164,7 +167,7 @@ class Descent:
         for _ in range(IMPROVEMENTS):
             bounds = (self.lower - w, self.upper - w)
             change = Descent(matrix, -gradient, *bounds, unit / EPSILON, self.kink - w, self.weight)
-            moved = minimise(change, w) if minimise else change.minimise(float(np.finfo(float).tiny))
+            moved = minimise(change, w) if minimise else change.minimise(CLOSED)
             there = np.where(moved.w == change.upper, self.upper, np.where(moved.w == change.lower, self.lower, w + moved.w))
             there = np.where(self.rubs & (moved.w == change.kink), self.kink, there)
             w = np.clip(there, self.lower, self.upper)

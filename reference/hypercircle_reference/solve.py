@@ -17,7 +17,7 @@ from hypercircle_process import Failure, log
 
 from .constraints import Constraints
 from .coupled import CoupledDescent, Rows
-from .descent import EPSILON, Descent, Minimum, absolute
+from .descent import CLOSED, EPSILON, Descent, Minimum, absolute
 from .model import Model
 
 RESIDUAL = 1e-8
@@ -112,7 +112,7 @@ class Reduced:
         except Failure as failure:
             log(self.comm, f"{failure}; once more, from no displacement")
             try:
-                found = self._checked(descent, np.finfo(float).tiny)
+                found = self._checked(descent, CLOSED)
             except Failure:
                 raise failure from None
         return self._gather(*found)

@@ -34,7 +34,8 @@ def whole_numbers(blocks):
 
 def read_nastran(source):
     """A Nastran deck; one without its first words, as Gmsh writes it, is bulk data from its first line on."""
-    meshio = load_meshio()
+    import meshio
+
     with open(source, encoding="utf-8", errors="replace") as file:
         text = file.read()
     if any(line.strip().upper().startswith("BEGIN BULK") for line in text.splitlines()):
@@ -48,7 +49,8 @@ def read_nastran(source):
 
 def from_meshio(source):
     """Points, blocks, node sets and numbers of groups, as meshio has them."""
-    meshio = load_meshio()
+    import meshio
+
     mesh = meshio.read(source) if not source.lower().endswith(NASTRAN) else read_nastran(source)
     blocks = {name: whole_numbers(blocks) for name, blocks in mesh.cell_data.items() if name not in NO_GROUPS}
     whole = [name for name, found in blocks.items() if found is not None]
