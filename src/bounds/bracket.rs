@@ -141,7 +141,7 @@ pub fn work_of_remainders(problem: &Problem, dual: &DualSolution, v: &Displaceme
         let u = side_coefficients(problem, v, e);
         let own = moments.of_mut(e);
         for c in 0..2 {
-            let along: Vec<f64> = u.iter().map(|u| u[c]).collect();
+            let along = side::component(&u, c);
             let found = side::moments(&along, own.len() - 1);
             own.iter_mut().zip(found).for_each(|(moment, found)| moment[c] = length * found);
         }

@@ -56,7 +56,7 @@ pub fn work_on_edges(problem: &Problem, v: &Displacement, tractions: &[(usize, V
         let (length, _) = problem.mesh.edge_frame(*e);
         let u = side_coefficients(problem, v, *e);
         for c in 0..2 {
-            let [t, u]: [Vec<f64>; 2] = [coefficients.iter().map(|t| t[c]).collect(), u.iter().map(|u| u[c]).collect()];
+            let [t, u] = [&coefficients[..], &u[..]].map(|list| side::component(list, c));
             work.add(length * side::integral(&t, &u));
         }
     }
@@ -82,7 +82,6 @@ fn work_on_edge(problem: &Problem, v: &Displacement, e: usize, [a, b]: [[f64; 2]
     let (length, _) = problem.mesh.edge_frame(e);
     let u = side_coefficients(problem, v, e);
     let own = problem.weighted(e, [a, b]);
-    let values = |list: &[[f64; 2]], c: usize| list.iter().map(|u| u[c]).collect::<Vec<_>>();
-    let along = |c: usize| side::integral(&values(&own, c), &values(&u, c));
+    let along = |c: usize| side::integral(&side::component(&own, c), &side::component(&u, c));
     [0, 1].map(|c| length * along(c))
 }

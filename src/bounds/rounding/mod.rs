@@ -41,7 +41,7 @@ const ROUNDING_PER_VALUE: f64 = 8.0 * f64::EPSILON;
 /// coefficients.
 pub fn largest_by_edge(problem: &Problem, moments: &SideValues<[f64; 2]>) -> Vec<f64> {
     let of = |e: usize| {
-        let along = |c: usize| side::from_moments(&moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>());
+        let along = |c: usize| side::from_moments(&side::component(moments.of(e), c));
         let largest = along(0).iter().zip(along(1)).fold(0.0_f64, |m, (x, y)| m.max(x.hypot(y)));
         largest / problem.mesh.edge_frame(e).0
     };

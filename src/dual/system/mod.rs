@@ -238,7 +238,7 @@ pub fn applied(problem: &Problem, e: usize, ends: [[f64; 2]; 2], degree: usize) 
         match own[..] {
             [a, b] => side::linear([a[c], b[c]], degree).collect(),
             _ => {
-                let values: Vec<f64> = own.iter().map(|t| t[c]).collect();
+                let values = side::component(&own, c);
                 if values.len() <= degree + 1 {
                     side::elevate(&values, degree)
                 } else {

@@ -27,6 +27,11 @@ pub fn value(coefficients: &[f64], s: f64) -> f64 {
     coefficients.iter().enumerate().map(|(k, c)| c * bernstein(p, k, s)).sum()
 }
 
+/// Component `c` of vectors, as coefficients or values.
+pub fn component(vectors: &[[f64; 2]], c: usize) -> Vec<f64> {
+    vectors.iter().map(|v| v[c]).collect()
+}
+
 /// ∫₀¹ B_i B_j ds of degrees p and q.
 pub fn product(p: usize, i: usize, q: usize, j: usize) -> f64 {
     binomial(p, i) * binomial(q, j) / (binomial(p + q, i + j) * (p + q + 1) as f64)

@@ -124,7 +124,7 @@ impl Tip {
         for &(e, sign) in &self.place.edges {
             let (length, _) = problem.mesh.edge_frame(e);
             let u = side_coefficients(problem, v, e);
-            let [x, y]: [Vec<f64>; 2] = [0, 1].map(|c| u.iter().map(|u| u[c]).collect());
+            let [x, y] = [0, 1].map(|c| side::component(&u, c));
             for (s, weight, t) in self.tractions(problem, (e, sign), u.len()) {
                 sum.add(length * weight * (t[0] * side::value(&x, s) + t[1] * side::value(&y, s)));
             }

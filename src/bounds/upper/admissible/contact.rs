@@ -8,7 +8,7 @@ use super::nodes::{NodalValues, Nodes};
 use super::rows::{Row, of_pair, sides};
 use crate::bounds::upper::relaxation::share::Share;
 use crate::element::SideValues;
-use crate::element::polynomial::side::lower_moments;
+use crate::element::polynomial::side::{component, lower_moments};
 use crate::problem::{ContactPair, Problem};
 use crate::vector::dot;
 
@@ -33,7 +33,7 @@ pub fn give(problem: &Problem, pair: &ContactPair) -> [f64; 2] {
 pub fn mean_excess(problem: &Problem, moments: &SideValues<[f64; 2]>, pair: &ContactPair) -> f64 {
     let n = pair.direction.ends;
     let total = |e: usize, start: usize, share: f64| {
-        let lowered = |c: usize| lower_moments(&moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>(), 1);
+        let lowered = |c: usize| lower_moments(&component(moments.of(e), c), 1);
         let [x, y] = [0, 1].map(lowered);
         let turned = problem.mesh.edges[e].vertices[0] != start;
         let [a, b] = if turned { [1, 0] } else { [0, 1] }.map(|end| [x[end], y[end]]);

@@ -199,7 +199,7 @@ fn motion(friction: &Friction, mean: f64, t: &[f64], rounding: f64) -> Motion {
 fn mean_sliding(problem: &Problem, moments: &SideValues<[f64; 2]>, pair: &ContactPair, friction: &Friction) -> f64 {
     let [t, u] = friction.tangent.ends;
     let total = |e: usize, start: usize, share: f64| {
-        let lowered = |c: usize| side::lower_moments(&moments.of(e).iter().map(|m| m[c]).collect::<Vec<_>>(), 1);
+        let lowered = |c: usize| side::lower_moments(&side::component(moments.of(e), c), 1);
         let [x, y] = [0, 1].map(lowered);
         let turned = problem.mesh.edges[e].vertices[0] != start;
         let [a, b] = if turned { [1, 0] } else { [0, 1] }.map(|end| [x[end], y[end]]);
