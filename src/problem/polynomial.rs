@@ -7,6 +7,7 @@
 //! functions.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 use super::build::section;
 use super::{EdgeWeight, Note, Problem};
@@ -51,17 +52,13 @@ impl Problem {
 
     /// Bernstein coefficients of the traction on every edge that has one, from its first vertex to its second, as nodal forces count it.
     pub fn pressed_edges(&self) -> Vec<(usize, Vec<[f64; 2]>)> {
-        let mut edges: Vec<_> = self.tractions().map(|(e, ends)| (e, ends.to_vec())).collect();
-        if self.counted == Counted::Nearest {
-            return edges;
-        }
-        for traction in self.scene.tractions.iter().filter(|traction| !traction.terms.is_empty()) {
-            let named = self.mesh.boundary(&traction.on);
-            for (e, coefficients) in edges.iter_mut().filter(|(e, _)| named.contains(e)) {
-                *coefficients = whole(&self.scene, &self.mesh, *e, traction);
-            }
-        }
-        edges
+        let has_more = |traction: &&Traction| self.counted == Counted::Whole && !traction.terms.is_empty();
+        let polynomials = self.scene.tractions.iter().filter(has_more);
+        let mut whole: HashMap<usize, _> = polynomials
+            .flat_map(|traction| self.mesh.boundary(&traction.on).into_iter().map(move |e| (e, traction)))
+            .map(|(e, traction)| (e, whole(&self.scene, &self.mesh, e, traction)))
+            .collect();
+        self.tractions().map(|(e, ends)| (e, whole.remove(&e).unwrap_or_else(|| ends.to_vec()))).collect()
     }
 
     /// True if a traction of the scene is of higher degree than one.
@@ -125,7 +122,7 @@ fn plus(mut f: Vec<[f64; 2]>, [a, b]: [[f64; 2]; 2]) -> Vec<[f64; 2]> {
 
 /// Coefficients of a function times the weight.
 fn times(weight: &EdgeWeight, f: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let [x, y] = [0, 1].map(|c| weight.times(&f.iter().map(|p| p[c]).collect::<Vec<_>>()));
+    let [x, y] = [0, 1].map(|c| weight.times(&side::component(f, c)));
     x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
 }
 
@@ -160,7 +157,7 @@ fn product(f: &[f64], g: &[f64]) -> Vec<f64> {
 
 /// The ends of the affine function that is nearest in the weighted mean square.
 fn nearest(whole: &[[f64; 2]], weight: &EdgeWeight) -> [[f64; 2]; 2] {
-    let along = |c: usize| weight.linear(&weight.times(&whole.iter().map(|p| p[c]).collect::<Vec<_>>()));
+    let along = |c: usize| weight.linear(&weight.times(&side::component(whole, c)));
     let [x, y] = [along(0), along(1)];
     [[x[0], y[0]], [x[1], y[1]]]
 }
@@ -180,7 +177,7 @@ pub(super) fn remarks(problem: &Problem) -> Vec<Note> {
         let name = problem.mesh.boundary(&traction.on);
         let size = |p: &[[f64; 2]]| {
             let square = |c: usize| {
-                let own: Vec<f64> = p.iter().map(|p| p[c]).collect();
+                let own = side::component(p, c);
                 side::integral(&own, &own)
             };
             square(0) + square(1)

@@ -5,7 +5,7 @@
 //! good as exact, the one with which the equations hold best is taken for that of the program.
 
 use super::NodalForces;
-use super::springs::Functions;
+use super::functions::Functions;
 use crate::bounds::Cell;
 use crate::compare::candidate::Candidate;
 use crate::element::Quadrilateral;

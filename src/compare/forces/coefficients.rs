@@ -1,7 +1,7 @@
 //! Forces on the Bernstein polynomials of a displacement of any degree: [`NodalForces`] by coefficients in place of nodes.
 
 use super::NodalForces;
-use super::springs::Functions;
+use super::functions::Functions;
 use crate::element::PlainDisplacement;
 use crate::element::displacement::plain;
 use crate::element::geometry::gradients;

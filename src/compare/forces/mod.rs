@@ -2,6 +2,7 @@
 
 pub mod cells;
 pub(super) mod coefficients;
+pub mod functions;
 pub(super) mod quadrilaterals;
 pub mod springs;
 pub mod tractions;
@@ -11,7 +12,7 @@ use crate::bounds::{Hold, Holds, Nodes};
 use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
 use crate::problem::Problem;
-use springs::Functions;
+use functions::Functions;
 
 /// Barycentric coordinates of the midpoints of the edges opposite the corners, as [`shape_gradients`] counts them.
 const MIDPOINTS: usize = 3;

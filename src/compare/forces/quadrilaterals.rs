@@ -4,7 +4,7 @@
 //! a solution balances the loads to round-off only in the same one.
 
 use super::NodalForces;
-use super::springs::Functions;
+use super::functions::Functions;
 use crate::bounds::Potential;
 use crate::element::OnQuadrilaterals;
 use crate::element::displacement::bilinear;

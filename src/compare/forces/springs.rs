@@ -1,69 +1,10 @@
 //! Forces of springs and elastic layers at the nodes of a displacement model.
 
 use super::NodalForces;
+use super::functions::{Functions, nodes_along};
 use crate::element::polynomial::{positive, side};
-use crate::problem::{Bed, EdgeWeight, Problem};
+use crate::problem::{Bed, Problem};
 use crate::vector::dot;
-
-/// The functions that belong to the nodes of a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Functions {
-    /// Values at vertices, and for degree 2 at the middles of edges.
-    Values,
-    /// Bernstein coefficients.
-    Coefficients,
-}
-
-impl Functions {
-    /// ∫ φ_i φ_j on an edge of length one.
-    fn product(self, degree: usize, i: usize, j: usize) -> f64 {
-        const QUADRATIC: [[f64; 3]; 3] = [[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]];
-        match (self, degree) {
-            (Functions::Values, 2) => QUADRATIC[i][j] / 30.0,
-            _ => side::product(degree, i, degree, j),
-        }
-    }
-
-    /// As [`Self::product`], with the weight of the points of the edge.
-    fn weighted(self, weight: EdgeWeight, degree: usize, i: usize, j: usize) -> f64 {
-        if weight.radii().is_none() {
-            return self.product(degree, i, j);
-        }
-        // The functions of values by their Bernstein coefficients.
-        const VALUES: [[f64; 3]; 3] = [[1.0, -0.5, 0.0], [0.0, 2.0, 0.0], [0.0, -0.5, 1.0]];
-        match (self, degree) {
-            (Functions::Values, 2) => (0..3)
-                .flat_map(|p| (0..3).map(move |q| (p, q)))
-                .map(|(p, q)| VALUES[i][p] * VALUES[j][q] * weight.product(2, p, q))
-                .sum(),
-            _ => weight.product(degree, i, j),
-        }
-    }
-
-    /// ∫ f φ_i of the functions of a degree, from those of the Bernstein polynomials of that degree.
-    pub fn moments(self, moments: Vec<f64>) -> Vec<f64> {
-        match (self, &moments[..]) {
-            (Functions::Values, [a, middle, b]) => vec![a - 0.5 * middle, 2.0 * middle, b - 0.5 * middle],
-            _ => moments,
-        }
-    }
-
-    /// Bernstein coefficients of the jump with these values less the gap with those coefficients.
-    fn beyond(self, jump: &[f64], gap: &[f64]) -> Vec<f64> {
-        let own = match (self, jump) {
-            (Functions::Values, [a, middle, b]) => vec![*a, 2.0 * middle - 0.5 * (a + b), *b],
-            _ => jump.to_vec(),
-        };
-        let degree = own.len().max(gap.len()) - 1;
-        let [own, gap] = [&own, gap].map(|f| side::elevate(f, degree));
-        own.iter().zip(&gap).map(|(j, g)| j - g).collect()
-    }
-
-    /// ∫ d₊ φ_i on an edge of length one whose points have the weight `weight`, for all functions of degree `degree`.
-    fn forces(self, weight: EdgeWeight, beyond: &[f64], degree: usize) -> Vec<f64> {
-        self.moments(positive::moments(beyond, degree, weight.ends()))
-    }
-}
 
 impl NodalForces {
     /// Adds the forces of springs for the values `value` of nodes: vertices, then those inside each edge. Returns the energy of the
@@ -76,11 +17,7 @@ impl NodalForces {
         value: impl Fn(usize) -> [f64; 2],
     ) -> f64 {
         let mesh = &problem.mesh;
-        let along = |e: usize| -> Vec<usize> {
-            let [a, b] = mesh.edges[e].vertices;
-            let inside = mesh.points.len() + e * (degree - 1);
-            std::iter::once(a).chain(inside..inside + degree - 1).chain([b]).collect()
-        };
+        let along = |e: usize| nodes_along(mesh, e, degree).collect::<Vec<_>>();
         let mut energy = 0.0;
         for (pair, stiffness) in problem.bed_pairs() {
             let first = along(pair.edge);
@@ -145,10 +82,7 @@ pub fn spring_forces(
     value: impl Fn(usize) -> [f64; 2],
 ) -> Vec<[f64; 2]> {
     let (mesh, functions) = (&problem.mesh, Functions::Values);
-    let along = |e: usize| -> Vec<usize> {
-        let ([a, b], inside) = (mesh.edges[e].vertices, mesh.points.len() + e);
-        if degree == 1 { vec![a, b] } else { vec![a, inside, b] }
-    };
+    let along = |e: usize| nodes_along(mesh, e, degree).collect::<Vec<_>>();
     let mut forces = vec![[0.0; 2]; nodes];
     for pair in &bed.pairs {
         let axis = pair.axes[direction];

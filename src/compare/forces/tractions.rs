@@ -1,9 +1,8 @@
 //! Tractions at the nodes of a displacement model.
 
 use super::NodalForces;
-use super::springs::Functions;
+use super::functions::{Functions, nodes_along};
 use crate::element::polynomial::side;
-use crate::mesh::Triangulation;
 use crate::problem::Problem;
 
 impl NodalForces {
@@ -23,17 +22,15 @@ pub fn add(
     functions: Functions,
     load: &mut [[f64; 2]],
 ) {
-    let length = problem.scene.thickness * problem.mesh.edge_frame(e).0;
-    for c in 0..2 {
-        let along: Vec<f64> = traction.iter().map(|t| t[c]).collect();
-        let forces = functions.moments(side::moments(&along, degree));
-        nodes(&problem.mesh, e, degree).zip(forces).for_each(|(node, f)| load[node][c] += length * f);
-    }
+    let moments = [0, 1].map(|c| side::moments(&side::component(traction, c), degree));
+    spread(problem, (e, moments), functions, load);
 }
 
-/// The nodes of a field of degree `degree` on edge `e`, from its first vertex to its second.
-pub fn nodes(mesh: &Triangulation, e: usize, degree: usize) -> impl Iterator<Item = usize> {
-    let [a, b] = mesh.edges[e].vertices;
-    let inside = mesh.points.len() + e * (degree - 1);
-    std::iter::once(a).chain(inside..inside + degree - 1).chain([b])
+/// Adds forces along an edge, by their components ∫ T_c B_k on an edge of length one.
+pub fn spread(problem: &Problem, (e, moments): (usize, [Vec<f64>; 2]), functions: Functions, load: &mut [[f64; 2]]) {
+    let length = problem.scene.thickness * problem.mesh.edge_frame(e).0;
+    let nodes = nodes_along(&problem.mesh, e, moments[0].len() - 1);
+    for (c, moments) in moments.into_iter().enumerate() {
+        nodes.clone().zip(functions.moments(moments)).for_each(|(node, f)| load[node][c] += length * f);
+    }
 }

@@ -6,7 +6,7 @@
 
 use super::NodalForces;
 use super::cells;
-use super::springs::Functions;
+use super::functions::Functions;
 use crate::bounds::Potential;
 use crate::compare::candidate::Candidate;
 use crate::element::Material;

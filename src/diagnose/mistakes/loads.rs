@@ -1,6 +1,6 @@
 //! Wrong loads.
 
-use crate::compare::forces::springs::Functions;
+use crate::compare::forces::functions::Functions;
 use crate::compare::forces::{cells, tractions};
 use crate::diagnose::fit::Terms;
 use crate::diagnose::space::Space;

@@ -1,6 +1,6 @@
 //! Loads that are shared among nodes by hand where shape functions would share them.
 
-use crate::compare::forces::springs::Functions;
+use crate::compare::forces::functions::{Functions, nodes_along};
 use crate::compare::forces::tractions as edges;
 use crate::diagnose::space::Space;
 use crate::diagnose::{Finding, Trial};
@@ -73,15 +73,15 @@ fn tractions(space: &Space<'_>, shares: &Shares) -> Vec<[f64; 2]> {
     for (e, traction) in problem.pressed_edges() {
         edges::add(problem, (e, &traction), degree, Functions::Values, &mut forces);
         let length = problem.scene.thickness * mesh.edge_frame(e).0;
-        let middle = if degree == 2 { Some((mesh.points.len() + e, 2)) } else { None };
-        let ends = mesh.edges[e].vertices.into_iter().zip([0, 1]);
-        for c in 0..2 {
-            let along: Vec<f64> = traction.iter().map(|t| t[c]).collect();
+        // Shares are those of the ends, then of the middle.
+        let order: &[usize] = if degree == 2 { &[0, 2, 1] } else { &[0, 1] };
+        let given = [0, 1].map(|c| {
+            let along = side::component(&traction, c);
             let mean = along.iter().sum::<f64>() / along.len() as f64;
-            let given = if shares.own { [0.0, 1.0, 0.5].map(|s| side::value(&along, s)) } else { [mean; 3] };
-            for (node, k) in ends.clone().chain(middle) {
-                forces[node][c] -= length * shares.edge[k] * given[k];
-            }
+            if shares.own { [0.0, 1.0, 0.5].map(|s| side::value(&along, s)) } else { [mean; 3] }
+        });
+        for (node, &k) in nodes_along(mesh, e, degree).zip(order) {
+            (0..2).for_each(|c| forces[node][c] -= length * shares.edge[k] * given[c][k]);
         }
     }
     forces

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::material;
 use crate::bounds::Sum;
-use crate::compare::forces::springs::Functions;
+use crate::compare::forces::functions::Functions;
 use crate::compare::forces::tractions;
 use crate::compare::forces::turned;
 use crate::compare::forces::turned::Rule;
