@@ -268,12 +268,14 @@ fn the_certificate_of_a_field_on_a_distorted_mesh_is_its_error() {
         let Some(mesh) = Pressed::new(&mut random, n, nodes) else { continue };
         tried += 1;
         let certified = solved(mesh.problem(folder.path()));
-        let lifted = random.chance(0.5);
+        // Every fifth field is the exact one, of which rounding alone is left.
+        let size = if tried % 5 == 0 { 0.0 } else { 0.1 };
+        let lifted = size > 0.0 && random.chance(0.5);
         let spoilt: Vec<[f64; 2]> = mesh
             .points
             .iter()
             .map(|p| {
-                let [x, y] = [random.between(-0.1, 0.1), random.between(-0.1, 0.1)];
+                let [x, y] = [random.between(-size, size), random.between(-size, size)];
                 let up = if lifted { 0.02 } else { 0.0 };
                 [if p[0] == 0.0 { 0.0 } else { x }, if p[1] == 0.0 { up } else { y }]
             })
@@ -309,9 +311,10 @@ fn the_certificate_of_a_field_on_a_distorted_mesh_is_its_error() {
         let found = judged.relative_error(&certified.bracket);
         let exact = (error / STRAIN).sqrt();
         assert!(found >= exact * (1.0 - 1e-12), "{found} below {exact}, mesh {tried}");
-        assert!(found <= exact * (1.0 + 1e-9) + 1e-12, "{found} far above {exact}, mesh {tried}");
+        let rounding = if size > 0.0 { 1e-12 } else { 1e-6 };
+        assert!(found <= exact * (1.0 + 1e-9) + rounding, "{found} far above {exact}, mesh {tried}");
         let gap = judged.field.potential.total() - certified.bracket.lower();
         assert!((judged.field.local.total - gap).abs() < 1e-11 * STRAIN, "mesh {tried}");
-        assert!(judged.field.local.triangles.iter().all(|t| *t > -1e-14));
+        assert!(judged.field.local.triangles.iter().all(|t| *t >= 0.0), "squares, mesh {tried}");
     }
 }

@@ -206,7 +206,8 @@ impl UpperTerms {
         self.potential.strain += strain;
         self.potential.work += work;
         let now: f64 = triangles.iter().map(|t| self.triangles[*t]).sum();
-        let corrected = now + strain - work;
+        // Half a square: what is below zero is rounding.
+        let corrected = (now + strain - work).max(0.0);
         for &t in triangles {
             let part = if now > 0.0 { self.triangles[t] / now } else { 1.0 / triangles.len() as f64 };
             self.triangles[t] = part * corrected;
