@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::commands::job::JobOptions;
-use super::given::friction::refuse_friction;
+use super::given::friction::refuse_ranges;
 use super::given::memory::{COARSER, enough, too_fine};
 use super::given::options::{Engine, EngineOptions, Limits, SolveOptions};
-use super::given::revolved::refuse_unsupported;
 use super::given::threads;
 use super::words::ci;
 use super::words::progress::Progress;
@@ -97,8 +96,7 @@ impl Session {
         solve: &SolveOptions,
         quiet: bool,
     ) -> Result<Self, CliError> {
-        refuse_unsupported(command, &scene)?;
-        refuse_friction(command, &scene)?;
+        refuse_ranges(&scene)?;
         let budget = enough(solve.memory.budget(threads))?;
         let (start, progress) = (Instant::now(), Progress::new(quiet));
         Ok(Session { scene, progress, start, command, quiet, run: None, threads, budget })

@@ -14,7 +14,7 @@ pub use bed::{Bed, BedPair, EdgeWeight, OneSided};
 pub use contact::bow::Bow;
 pub use contact::coulomb::follows_coulomb;
 pub use contact::direction::Direction;
-pub use contact::friction::{Friction, rubs};
+pub use contact::friction::Friction;
 pub use error::ProblemError;
 pub use polynomial::{Counted, Oscillation};
 pub use scales::{ROUND_OFF, Scales, Sizes, amplified};

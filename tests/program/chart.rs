@@ -8,8 +8,12 @@ use serde_json::Value;
 use crate::command::{case, ended, hypercircle, run};
 
 fn chart(folder: &Path, options: &[&str]) -> Output {
+    chart_of(folder, "two_blocks", options)
+}
+
+fn chart_of(folder: &Path, scene: &str, options: &[&str]) -> Output {
     let mut command = hypercircle(folder, ["chart"]);
-    command.arg(case("two_blocks")).args(options).arg("--out").arg(folder);
+    command.arg(case(scene)).args(options).arg("--out").arg(folder);
     let output = run(command);
     ended("chart", &output, 0, &[]);
     output
@@ -235,4 +239,45 @@ fn a_quantity_is_charted_with_its_interval() {
     assert!(page.contains("relative error of tip") && page.contains("wanted of tip"));
     assert!(folder.path().join("out/figures/chart-asked-quantity-1-whole.svg").is_file());
     ended("a name that is none", &asked("top"), 2, &["asked.toml", "'top'", "tip"]);
+}
+
+#[test]
+fn bodies_of_revolution_and_friction_with_a_given_bound_are_charted() {
+    // Lamé's press fit: ½ p δ times the area of the seat, and δ < 0.
+    let (b, c, [shaft, hub], [nu_shaft, nu_hub], delta) = (10.0, 20.0, [210e3, 70e3], [0.3, 0.33], 0.01_f64);
+    let soft = b / hub * ((c * c + b * b) / (c * c - b * b) + nu_hub) + b / shaft * (1.0 - nu_shaft);
+    let energy = 0.5 * delta * delta / soft * std::f64::consts::TAU * b * 10.0;
+    for (scene, exact) in [("press_fit", Some(energy)), ("pushed_partly", None)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let options = ["--reduced", "--method", "condensed-p2", "--method", "FEniCSx P2", "--refine", "0", "--quiet"];
+        chart_of(folder.path(), scene, &options);
+        let chart = json(folder.path());
+        let scene = &chart["scenes"][0];
+        let bracket = ["lower", "upper"].map(|key| scene["reference"]["Ok"][key].as_f64().expect("a number"));
+        if let Some(exact) = exact {
+            assert!(bracket[0] <= exact && exact <= bracket[1], "{bracket:?} and {exact}");
+        }
+        let runs = scene["runs"].as_array().expect("runs");
+        assert_eq!(runs.len(), 2);
+        for run in runs {
+            // No stress is above and no displacement below what holds the exact energy.
+            let [lower, upper] = ["lower", "upper"].map(|key| run["plot"][key].as_f64());
+            assert!(lower.is_none_or(|lower| lower <= bracket[1]) && upper.expect("a bound") >= bracket[0], "{run}");
+        }
+    }
+}
+
+#[test]
+fn coulomb_friction_has_no_chart() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text =
+        std::fs::read_to_string(case("pushed_partly")).expect("a case").replace("bound = 0.15", "coefficient = 0.3");
+    let scene = folder.path().join("coulomb.toml");
+    std::fs::write(&scene, text).expect("writable");
+    let mut command = hypercircle(folder.path(), ["chart"]);
+    let output = run({
+        command.arg(&scene).args(["--reduced", "--quiet"]);
+        command
+    });
+    ended("chart", &output, 2, &["coulomb.toml", "Coulomb", "bound"]);
 }

@@ -7,10 +7,9 @@ use std::str::FromStr;
 use clap::{ValueEnum, value_parser};
 
 use crate::chart::{self, Campaign, CampaignError, Chart, Of, Plan, SceneChart, Status, fastest};
-use crate::cli::given::friction::refuse_friction;
+use crate::cli::given::friction::refuse_chart;
 use crate::cli::given::methods::MethodOptions;
 use crate::cli::given::options::{MemoryOptions, NamedTolerance, RunOptions, positive, tolerance};
-use crate::cli::given::revolved::refuse_unsupported;
 use crate::cli::session::refuse_unknown;
 use crate::cli::words::progress::Progress;
 use crate::cli::words::say;
@@ -173,8 +172,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let mut scenes: Vec<Scene> = Vec::new();
     for path in &args.scenes {
         let scene = Scene::read(path)?;
-        refuse_unsupported("chart", &scene)?;
-        refuse_friction("chart", &scene)?;
+        refuse_chart(&scene)?;
         refuse_unknown(&scene, args.quantities().iter().map(String::as_str))?;
         if let Some(other) = scenes.iter().find(|s| s.name == scene.name) {
             let message = format!("{} and {} have the same name", other.path.display(), path.display());

@@ -1,46 +1,37 @@
-//! Restrictions of commands and options for friction.
+//! Restrictions of commands for Coulomb friction.
 
 use crate::cli::{CliError, Exit};
-use crate::problem::{follows_coulomb, rubs};
+use crate::problem::follows_coulomb;
 use crate::scene::Scene;
 
-/// The commands that take contacts with friction.
-const COMMANDS: [&str; 3] = ["solve", "verify", "certify"];
-
-/// Refuses what is not there for contacts with friction.
+/// Refuses ranges of the data beside Coulomb friction, which are there beside friction with a given bound.
 ///
 /// # Errors
 /// Names what was asked for, and what there is.
-pub fn refuse_friction(command: &str, scene: &Scene) -> Result<(), CliError> {
-    if !rubs(scene) {
-        return Ok(());
-    }
-    let path = scene.path.display();
-    if !COMMANDS.contains(&command) {
-        let what = format!("{path}: `{command}` does not take contacts with friction");
-        return Err(CliError::stopped(
-            Exit::BadInput,
-            what,
-            "leave `friction` out of the scene, or use `solve`, `verify` or `certify`",
-        ));
-    }
-    refuse_coulomb(scene)
+pub fn refuse_ranges(scene: &Scene) -> Result<(), CliError> {
+    let Some(range) = scene.ranges.first().filter(|_| follows_coulomb(scene)) else { return Ok(()) };
+    let what = format!(
+        "{} is a range: the energy of Coulomb friction is not monotone in the data, so that two ends say nothing of what lies between",
+        scene.name_of(range)
+    );
+    Err(stopped(scene, &what, "write one number, or give the bound of friction itself"))
 }
 
-/// Refuses what is not there for Coulomb friction, and is for friction with a given bound.
-fn refuse_coulomb(scene: &Scene) -> Result<(), CliError> {
-    let stop = |what: String, help: &str| {
-        Err(CliError::stopped(Exit::BadInput, format!("{}: {what}", scene.path.display()), help))
-    };
+/// Refuses to chart Coulomb friction.
+///
+/// # Errors
+/// Says why, and what there is.
+pub fn refuse_chart(scene: &Scene) -> Result<(), CliError> {
     if !follows_coulomb(scene) {
         return Ok(());
     }
-    if let Some(range) = scene.ranges.first() {
-        let what = format!(
-            "{} is a range: the energy of Coulomb friction is not monotone in the data, so that two ends say nothing of what lies between",
-            scene.name_of(range)
-        );
-        return stop(what, "write one number, or give the bound of friction itself");
-    }
-    Ok(())
+    Err(stopped(
+        scene,
+        "`chart` does not take Coulomb friction: its solutions have no bracket of their own to measure errors against",
+        "give the bound of friction itself, `friction = { bound = ... }`, or use `solve`, `verify` or `certify`",
+    ))
+}
+
+fn stopped(scene: &Scene, what: &str, help: &str) -> CliError {
+    CliError::stopped(Exit::BadInput, format!("{}: {what}", scene.path.display()), help)
 }

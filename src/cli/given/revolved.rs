@@ -55,22 +55,3 @@ pub fn refuse_claims(problem: &Problem, claims: Claims) -> Result<(), CliError> 
     };
     Err(CliError::stopped(Exit::BadInput, what, help))
 }
-
-/// Refuses what is not there for bodies of revolution.
-///
-/// # Errors
-/// Names what was asked for, and what there is.
-pub fn refuse_unsupported(command: &str, scene: &Scene) -> Result<(), CliError> {
-    if scene.kinematics != Kinematics::Axisymmetric {
-        return Ok(());
-    }
-    if !matches!(command, "solve" | "verify" | "certify") {
-        let what = format!("{}: `{command}` does not take bodies of revolution", scene.path.display());
-        return Err(CliError::stopped(
-            Exit::BadInput,
-            what,
-            "`hypercircle solve`, `verify` and `certify` take axisymmetric scenes",
-        ));
-    }
-    Ok(())
-}

@@ -5,12 +5,11 @@
 //!
 //! On a body of revolution tractions are weighted with the distance r from the axis, and so is their bound, a quadratic r τ̄.
 
-use super::coulomb::follows_coulomb;
 use crate::element::Section;
 use crate::element::polynomial::side;
 use crate::mesh::Triangulation;
 use crate::problem::{ContactPair, Direction, EdgeWeight, Interface, Note};
-use crate::scene::{Contact, Scene};
+use crate::scene::Contact;
 
 /// Part of the length of a contact within which an arc length is that of a vertex.
 const AT_VERTEX: f64 = 1e-9;
@@ -126,16 +125,10 @@ impl crate::problem::Problem {
     }
 }
 
-/// True if a scene has a contact with friction.
-pub fn rubs(scene: &Scene) -> bool {
-    follows_coulomb(scene)
-        || scene.contacts.iter().any(|contact| contact.friction.as_ref().is_some_and(|bound| !bound.is_none()))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::problem::Problem;
+    use crate::scene::Scene;
 
     const SCENE: &str = r#"
         model = { kinematics = "plane-strain" }
@@ -169,12 +162,12 @@ mod tests {
                 assert!((bound - exact).abs() < 1e-12, "{bound} at {s}");
             }
         }
-        assert!(problem.has_friction() && rubs(&problem.scene));
+        assert!(problem.has_friction());
     }
 
     #[test]
     fn no_bound_is_no_friction() {
         let problem = problem("0.0");
-        assert!(!problem.has_friction() && !rubs(&problem.scene));
+        assert!(!problem.has_friction());
     }
 }
