@@ -167,3 +167,41 @@ fn points_on_the_outline_and_outside_are_refused_with_what_is_bounded() {
     refuse_quantities(&problem).expect("a point inside");
     assert!(Form::new(&problem, &problem.scene.quantities[0]).is_ok());
 }
+
+/// A bar of height 1, E = 100 and ν = 0 between rollers, pressed by 1: on springs of 10 its points sink by 1/10 + y/100, and below a layer,
+/// clamped at its foot, by y/100. Discs reach what is soft, whose traction follows the displacement.
+#[test]
+fn discs_may_reach_springs_and_layers() {
+    let bar = |name: &str, [low, high]: [f64; 2]| {
+        let sides = ["foot", "right", "top", "left"].map(|side| format!("\"{name}_{side}\"")).join(", ");
+        let rollers =
+            ["left", "right"].map(|side| format!("[[supports]]\non = \"{name}_{side}\"\ntype = \"roller\"\n"));
+        let polygon = format!("[[0, {low}], [1, {low}], [1, {high}], [0, {high}]]");
+        let body = format!("[bodies.{name}]\nyoung = 100.0\npoisson = 0.0\n{}", rollers.concat());
+        (format!("[[geometry.polygons]]\nbody = \"{name}\"\npoints = {polygon}\nedges = [{sides}]\n"), body)
+    };
+    let pressed = |on: &str| format!("[[tractions]]\non = \"{on}_top\"\npressure = 1.0\n");
+    let ((low, of_low), (high, of_high)) = (bar("low", [0.0, 1.0]), bar("high", [1.0, 2.0]));
+    let springs = "[[supports]]\non = \"low_foot\"\ntype = \"spring\"\nstiffness = [10.0, 10.0]\n";
+    let layer = "[[supports]]\non = \"low_foot\"\ntype = \"clamped\"\n\
+                 [[bonds]]\nbetween = [\"low_top\", \"high_foot\"]\nstiffness = [10.0, 10.0]\n";
+    let scenes = [
+        (0.1, format!("{low}{of_low}{springs}{}", pressed("low"))),
+        (0.0, format!("{low}{high}{of_low}{of_high}{layer}{}", pressed("high"))),
+    ];
+    for (size, degree) in [(0.5, 1), (0.3, 2), (0.5, 3)] {
+        for (sinks, scene) in &scenes {
+            let text = format!("[model]\nkinematics = \"plane-stress\"\n[geometry]\nsize = {size}\n{scene}");
+            for p in [[0.5, 0.5], [0.4, 0.3], [0.3, 0.7]] {
+                let problem =
+                    Problem::load(Scene::parse(&text, "bar.toml".as_ref()).expect("a scene")).expect("a problem");
+                let answers = found(problem, degree, &[at(p, UY), at(p, UX)]);
+                for (answer, exact) in answers.iter().zip([-sinks - 0.01 * p[1], 0.0]) {
+                    let [low, high] = answer.interval.ends;
+                    assert!(low <= exact && exact <= high, "{p:?}: {exact} in [{low:e}, {high:e}], degree {degree}");
+                    assert!(high - low < 1e-4, "{p:?}: {low:e} to {high:e}");
+                }
+            }
+        }
+    }
+}

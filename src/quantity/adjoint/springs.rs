@@ -32,6 +32,9 @@ pub fn adjoint_of(problem: &Problem, functional: &Functional, adjoint: &StressFi
                 let load = side::linear(ends.map(|p| dot(p, *axis)), degree);
                 own.iter_mut().zip(load).for_each(|(q, p)| *q += p);
             }
+            for (_, load) in functional.load.edges.iter().filter(|(on, _)| *on == pair.edge) {
+                *own = combined(1.0, own, 1.0, &load.iter().map(|p| dot(*p, *axis)).collect::<Vec<_>>());
+            }
         }
         own
     };
