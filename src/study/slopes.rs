@@ -35,7 +35,7 @@ const ROUNDED_MEAN: f64 = 1e-12;
 
 /// Reason why a quantity has no interval of this kind.
 const NO_SLOPE: &str = "with friction, elastic contact or polynomial tractions only mean displacements of free and loaded boundaries and of \
-                        bodies, mean stresses, and forces of contacts and of supports without springs have an interval, and this is none of them";
+                        bodies, mean stresses, and forces of contacts and of supports that meet no spring have an interval, and this is none of them";
 
 /// The same of a body of revolution.
 const NO_SLOPE_REVOLVED: &str = "on bodies of revolution with friction or elastic contact only mean displacements of free and loaded boundaries \

@@ -9,6 +9,9 @@ use crate::element::geometry::gradients;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 
+/// The cosine of a motion with the axis of a spring below which it is across it, but for rounding.
+const ACROSS: f64 = 1e-14;
+
 /// Adds ∫ T·j(w) over all springs, whose traction T is −k j(u), for a motion w by edge and vertex, linear between.
 fn pull_springs(problem: &Problem, functional: &mut Functional, motion: impl Fn(usize, usize) -> [f64; 2]) {
     let mesh = &problem.mesh;
@@ -22,8 +25,10 @@ fn pull_springs(problem: &Problem, functional: &mut Functional, motion: impl Fn(
         let pulled = [facing(a, 0), facing(b, 1)].map(|jump| {
             let mut force = [0.0; 2];
             for (axis, k) in pair.axes.iter().zip(stiffness) {
-                let along = -k * (jump[0] * axis[0] + jump[1] * axis[1]);
-                (0..2).for_each(|c| force[c] += along * axis[c]);
+                let along = jump[0] * axis[0] + jump[1] * axis[1];
+                if along.abs() > ACROSS * jump[0].hypot(jump[1]) {
+                    (0..2).for_each(|c| force[c] -= k * along * axis[c]);
+                }
             }
             force
         });
