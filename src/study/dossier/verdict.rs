@@ -21,7 +21,10 @@ pub(in crate::study) fn verdict(
     let failed: Vec<&str> = failed.map(|c| c.name.as_str()).collect();
     let bound = energy.map_or(String::new(), |e| {
         let what = if e.guaranteed { "guaranteed" } else { "indicated" };
-        let (whose, of) = of_which(findings);
+        let (whose, of) = match of_which(findings) {
+            ("", of) if !e.guaranteed => ("for the scene as this mesh represents it, ", of),
+            which => which,
+        };
         let sentence = format!(
             "{whose}the exact energy{of} lies between {} and {}; the {what} relative energy-norm error is at most {}.",
             significant(e.lower, digits_to_tell(e.lower, e.upper)),
