@@ -21,6 +21,8 @@ pub(super) const PART: f64 = 0.5;
 const LARGER: f64 = 2.0;
 /// Loads below this fraction of the forces at supports and contacts do not determine the size of the solution.
 const BESIDE: f64 = 0.1;
+/// Forces below this fraction of all others are smaller than what a solver may leave.
+const UNSEEN: f64 = 1e-6;
 /// Error that rounding may leave in any case, relative to the scales of the data of a problem: where these cause no strain at all,
 /// everything is rounding.
 const OF_DATA: f64 = 1e-9;
@@ -71,6 +73,26 @@ impl Extent {
     pub fn rounding_of_forces(&self, load: f64, supported: f64, strain: f64) -> f64 {
         let supported = self.of_forces(strain) * supported;
         PART * MISTAKE * if load > BESIDE * supported { load } else { supported }
+    }
+}
+
+/// The sizes of the nodal forces of a field, each as the root of an energy.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sizes {
+    /// Of the loads, and of initial strains.
+    pub data: [f64; 2],
+    /// Of supports and contacts.
+    pub supported: f64,
+}
+
+impl Extent {
+    /// Residual of nodal forces that the digits of a file may leave, on a field of strain energy `strain`: part of what the smallest of its
+    /// causes leaves when it is 5 % off, loads or initial strains, and where there is neither, the forces at supports and contacts.
+    pub(super) fn digits_of_forces(&self, Sizes { data, supported }: Sizes, strain: f64) -> f64 {
+        let supported = self.of_forces(strain) * supported;
+        let all = data.into_iter().fold(supported, f64::max);
+        let seen = data.into_iter().filter(|size| *size > UNSEEN * all).reduce(f64::min);
+        PART * MISTAKE * seen.unwrap_or(supported)
     }
 }
 

@@ -43,6 +43,7 @@ mod quantities;
 mod random;
 mod revolved_fields;
 mod schemas;
+mod small_loads;
 mod spoiled;
 mod stability;
 mod stale;

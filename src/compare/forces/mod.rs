@@ -24,6 +24,8 @@ pub struct NodalForces {
     pub left: Vec<[f64; 2]>,
     /// ∫ F·φ + ∫ P·φ + ∫ cε0:e(φ).
     pub load: Vec<[f64; 2]>,
+    /// ∫ cε0:e(φ) alone.
+    pub initial: Vec<[f64; 2]>,
     /// Σ_j |K_ij| |u_j| + |load|: the scale of the errors by rounding of the values at the nodes.
     pub size: Vec<f64>,
     /// An upper estimate of the diagonal entry K_ii.
@@ -50,6 +52,7 @@ impl NodalForces {
         NodalForces {
             left: vec![[0.0; 2]; count],
             load: vec![[0.0; 2]; count],
+            initial: vec![[0.0; 2]; count],
             size: vec![0.0; count],
             stiffness: vec![0.0; count],
             triangle: vec![0; count],
@@ -93,8 +96,10 @@ impl NodalForces {
         gradients: &[[f64; 2]],
     ) {
         for (&node, d) in nodes.iter().zip(gradients) {
-            self.load[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
-            self.load[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
+            for forces in [&mut self.load, &mut self.initial] {
+                forces[node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
+                forces[node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
+            }
             self.size[node] += weight.abs() * d[0].hypot(d[1]) * (s[0].abs() + s[1].abs() + s[2].abs());
         }
     }
@@ -167,6 +172,15 @@ impl NodalForces {
     pub fn energy_size(&self, size: impl Fn(usize) -> f64) -> f64 {
         let term = |(i, k): (usize, &f64)| if *k > 0.0 { size(i).powi(2) / k } else { 0.0 };
         self.stiffness.iter().enumerate().map(term).sum::<f64>().sqrt()
+    }
+
+    /// The sizes of the loads and of the forces of initial strains, each as the root of an energy.
+    pub fn energy_sizes(&self) -> [f64; 2] {
+        let loads = self.energy_size(|i| {
+            let [load, initial] = [self.load[i], self.initial[i]];
+            (load[0] - initial[0]).hypot(load[1] - initial[1])
+        });
+        [loads, self.energy_size(|i| self.initial[i][0].hypot(self.initial[i][1]))]
     }
 
     /// The part of `left` that supports cannot take; `nodes` numbers its nodes on vertices and edges.

@@ -210,6 +210,13 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
             }
             (0..2).for_each(|c| forces.load[node][c] += weight * value * force[c]);
         }
+        if !material.initial().is_none() {
+            let held = law.stress(material.initial().around(at.place));
+            for (i, &node) in at.nodes.iter().enumerate() {
+                let own = at.force(i, held);
+                (0..2).for_each(|c| forces.initial[node][c] += weight * own[c]);
+            }
+        }
     });
     forces.add_tractions(problem, candidate.degree, Functions::Values);
     let springs = forces.add_springs(problem, candidate.degree, Functions::Values, |node| candidate.value(node));
@@ -221,6 +228,10 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
             work += load[c] * u[c];
             rounded += (load[c] * u[c]).abs();
         }
+    }
+    // The stresses above are without cε0, which is a load beside those of the whole strain.
+    for (load, initial) in forces.load.iter_mut().zip(&forces.initial) {
+        (0..2).for_each(|c| load[c] += initial[c]);
     }
     let magnitude = strain + springs + rounded;
     (forces, Potential { strain, work, magnitude, sensitivity: magnitude, springs, friction: 0.0 })

@@ -121,9 +121,14 @@ impl Solution<'_> {
             let size = size[part].max(scales.round_off.force);
             if size > 0.0 { missing(part) / size } else { 0.0 }
         };
-        let worst = (0..count).max_by(|a, b| relative(*a).total_cmp(&relative(*b)));
         // Forces of closed coefficients alone leave less than those taken at nodes where the direction of contact turns.
-        let worst = worst.filter(|_| !self.is_pushed());
+        let mut is_pushed = vec![false; count];
+        if self.is_pushed() {
+            let touching = |site: &Site| [Some(site.first), site.second].into_iter().flatten();
+            self.sites.list.iter().flat_map(touching).for_each(|node| is_pushed[label[node]] = true);
+        }
+        let worst = (0..count).filter(|part| !is_pushed[*part]);
+        let worst = worst.max_by(|a, b| relative(*a).total_cmp(&relative(*b)));
         let value = worst.map_or(self.residual(), relative);
         let force = worst.map_or(String::new(), |p| format!(" ({:.3e}, {:.3e}) is missing.", sum[p][0], sum[p][1]));
         self.claimed(
@@ -145,7 +150,13 @@ impl Solution<'_> {
             Hold::Line { normal, value } => normal.map(|x| value * x),
             Hold::Fixed(value) => value,
         };
-        let supports: f64 = nodes.map(|n| dot(self.supported(n), prescribed(n))).sum();
+        let held: f64 = nodes.map(|n| dot(self.supported(n), prescribed(n))).sum();
+        // What contacts do on prescribed displacements is theirs, and not that of supports.
+        let sites = self.sites.list.iter().zip(self.pressing.iter().zip(&self.rubbing));
+        let of_contacts = |(site, (pressing, rubbing)): (&Site, (&f64, &f64))| {
+            rubbing * site.slip(prescribed) - pressing * (site.excess(prescribed) + site.gap)
+        };
+        let supports = held - sites.map(of_contacts).sum::<f64>();
         // What contact does on a penetration has a check of its own.
         let weak: Vec<bool> = (0..self.problem.interfaces.len()).map(|i| self.holds_weakly(i).is_some()).collect();
         let distance =

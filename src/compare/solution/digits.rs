@@ -6,7 +6,7 @@
 
 use super::{SOLVER, Solution};
 use crate::compare::Check;
-use crate::compare::ceiling::{Allowance, Extent, MISTAKE, PART};
+use crate::compare::ceiling::{Allowance, Extent, MISTAKE, PART, Sizes};
 
 impl Solution<'_> {
     /// Limits the scales to the size of a solution given by `extent`, if the field is larger.
@@ -14,8 +14,8 @@ impl Solution<'_> {
         self.reference = extent.reference(self.largest);
         self.larger = extent.of_forces(self.strain);
         let supported = self.forces.energy_size(|i| self.forces.left[i][0].hypot(self.forces.left[i][1]));
-        let load = self.forces.energy_size(|i| self.forces.load[i][0].hypot(self.forces.load[i][1]));
-        self.ceiling = extent.rounding_of_forces(load, supported, self.strain) / self.scale;
+        let sizes = Sizes { data: self.forces.energy_sizes(), supported };
+        self.ceiling = extent.digits_of_forces(sizes, self.strain) / self.scale;
         self
     }
 

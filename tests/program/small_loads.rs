@@ -1,0 +1,73 @@
+//! Claims where loads are small beside heat, prescribed displacements, friction, or the loads of another body; `loads/README.md` says what the
+//! fields are.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::command::{hypercircle, run, said};
+
+/// The exit code of a field that claims to solve a scene of the folder `loads`, and its checks that did not pass.
+fn claimed(scene: &str, field: &str) -> (i32, Vec<Value>) {
+    let (code, report) = reported(scene, field);
+    let checks = report["checks"].as_array().expect("checks").iter();
+    (code, checks.filter(|check| check["passed"] == false).cloned().collect())
+}
+
+/// The sentence of the diagnosis of such a field.
+fn explained(scene: &str, field: &str) -> String {
+    let (_, report) = reported(scene, field);
+    report["diagnosis"][0]["sentence"].as_str().expect("a sentence").to_string()
+}
+
+fn reported(scene: &str, field: &str) -> (i32, Value) {
+    let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/loads");
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = hypercircle(folder.path(), ["certify"]);
+    command.arg(inputs.join(format!("{scene}.toml"))).arg("--displacement").arg(inputs.join(format!("{field}.vtu")));
+    let output = run({
+        command.args(["--solution", "--quiet", "--out", "out"]);
+        command
+    });
+    let text = std::fs::read(folder.path().join("out/report.json")).unwrap_or_else(|_| panic!("{}", said(&output)));
+    (output.status.code().expect("a code"), serde_json::from_slice(&text).expect("JSON"))
+}
+
+#[test]
+fn digits_that_hide_a_small_load_decide_nothing() {
+    for scene in ["heated", "moved"] {
+        assert_eq!(claimed(scene, scene), (0, Vec::new()), "{scene}");
+        let (code, checks) = claimed(scene, &format!("{scene}_unloaded"));
+        assert!(code == 1 && !checks.is_empty(), "{scene}: {checks:?}");
+        for check in checks {
+            assert!(
+                check["value"].is_null() && check["why"].as_str().is_some_and(|why| why.contains("digits")),
+                "{check}"
+            );
+        }
+    }
+}
+
+#[test]
+fn work_on_what_a_roller_prescribes_is_that_of_the_roller_alone() {
+    assert_eq!(claimed("rubbed", "rubbed"), (0, Vec::new()));
+}
+
+#[test]
+fn heat_that_works_against_the_load_leaves_a_scale() {
+    assert_eq!(claimed("ring", "ring"), (0, Vec::new()));
+}
+
+#[test]
+fn every_body_carries_its_own_load() {
+    let (code, checks) = claimed("uneven", "uneven_at_rest");
+    assert!(code == 1 && checks.iter().any(|check| check["name"] == "solution/reactions"), "{checks:?}");
+}
+
+#[test]
+fn the_simplest_mistake_is_named_where_others_would_do() {
+    let ring = explained("ring", "ring_unloaded");
+    assert!(ring.contains("load is missing"), "{ring}");
+    let crossed = explained("crossed", "crossed_axes");
+    assert!(crossed.contains("x and y of the load on b0_right are exchanged"), "{crossed}");
+}
