@@ -7,6 +7,7 @@
 //! (`physical`) and has far fewer unknowns than the residual has numbers. What contact and
 //! supports do shows in forces and displacements there and is read from them.
 
+mod choice;
 mod fit;
 mod mistakes;
 mod physical;
@@ -18,23 +19,13 @@ use serde::Serialize;
 
 use crate::compare::Solution;
 use crate::compare::solution::SOLVER;
+use choice::Limits;
 use fit::Terms;
 pub use mistakes::contact::in_the_mean;
 use space::Space;
 
-/// Of the squared residual what an explanation may leave: a hundredth of the residual.
-const LEFT: f64 = 1e-4;
-/// The part that a solver may have left counts as explained where it is no larger than this part of the squared residual: beyond it,
-/// whatever explains a little would explain all.
-const FLOOR: f64 = 1e-2;
-/// Of the squared residual what the nearest hypothesis has to explain to be worth a name.
-const NAMED: f64 = 0.5;
-/// As [`NAMED`], for a hypothesis that drops the equations of whole places: on a coarse mesh these hold half of any residual.
-const NAMED_PLACE: f64 = 0.9;
-/// Hypotheses of this rank and above are such.
-const PLACES: usize = 7;
-/// Explanations that leave less than this times what the best leaves are as good.
-const AS_GOOD: f64 = 10.0;
+/// Of the squared residual what the nearest hypothesis explains where it lacks no more than digits.
+const NEARLY_ALL: f64 = 0.95;
 
 /// What is wrong with a field, as far as it can be told.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -96,7 +87,7 @@ impl Trial {
     /// it.
     fn leaves(&self, finding: &Finding) -> bool {
         let of_values = self.findings.iter().any(|f| f.name == "value" || f.name.starts_with("displacement/"));
-        let of_forces = ["/glued", "/open"].iter().any(|end| finding.name.ends_with(end));
+        let of_forces = ["/glued", "/open", "/friction-law"].iter().any(|end| finding.name.ends_with(end));
         !of_values && !of_forces
     }
 }
@@ -138,7 +129,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         explained: None,
         tried: 0,
     };
-    let mut nearest = None;
+    let mut nearest = Vec::new();
     if solution.residual() > solution.allowed() {
         let space = Space::new(solution);
         let mut terms = Terms::new(&space);
@@ -149,12 +140,12 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
         // What contact does at a side is read from the contact itself.
         let told: Vec<&str> = diagnosis.findings.iter().map(|finding| finding.name.as_str()).collect();
         trials.retain(|trial| !trial.findings.iter().any(|finding| finding.is_of_contact_in(&told)));
-        let floor = (solution.allowed() / solution.residual()).powi(2);
-        let floor = if floor <= FLOOR { floor } else { 0.0 };
-        let found = simplest(trials, floor).or_else(|trials| {
+        let limits = Limits::of(solution);
+        let trials = limits.without_places(trials);
+        let found = limits.simplest(trials).or_else(|trials| {
             let together = terms.together();
             diagnosis.tried += together.len();
-            simplest(together, floor).map_err(|_| trials)
+            limits.simplest(together).map_err(|_| trials)
         });
         match found {
             Ok(trial) => {
@@ -168,16 +159,14 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
             }
             Err(trials) => {
                 diagnosis.explained = Some(0.0);
-                nearest = trials.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
-                nearest =
-                    nearest.filter(|trial| 1.0 - trial.left >= if trial.rank >= PLACES { NAMED_PLACE } else { NAMED });
+                nearest = choice::nearest(trials);
             }
         }
     }
     if diagnosis.findings.is_empty() && diagnosis.explained.is_none() {
         return None;
     }
-    diagnosis.sentence = sentence(&diagnosis, nearest.as_ref());
+    diagnosis.sentence = sentence(&diagnosis, &nearest);
     Some(diagnosis)
 }
 
@@ -193,6 +182,7 @@ fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
     mistakes::loads::terms(space, terms);
     mistakes::springs::terms(space, terms);
     let mut trials = mistakes::values::trials(space);
+    trials.extend(mistakes::shift::trial(space, |_| vec![[0.0; 2]; space.count()]));
     trials.extend(mistakes::material::trials(space));
     trials.extend(mistakes::anisotropic::trials(space));
     trials.extend(mistakes::layer::trials(space));
@@ -207,37 +197,29 @@ fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
     trials
 }
 
-/// The simplest of the trials that leave next to nothing, or all of them where none does; `floor` is what a solver leaves.
-fn simplest(mut trials: Vec<Trial>, floor: f64) -> Result<Trial, Vec<Trial>> {
-    let best = trials.iter().map(|t| t.left).fold(f64::INFINITY, f64::min);
-    if best > LEFT.max(floor) {
-        return Err(trials);
-    }
-    let enough = (AS_GOOD * best).max(floor).max(1e-2 * LEFT);
-    trials.retain(|t| t.left <= enough);
-    let key = |t: &Trial| (t.rank, t.left);
-    trials.into_iter().min_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1))).ok_or_else(Vec::new)
-}
-
-fn sentence(diagnosis: &Diagnosis, nearest: Option<&Trial>) -> String {
+fn sentence(diagnosis: &Diagnosis, nearest: &[Trial]) -> String {
     let said: Vec<&str> = diagnosis.findings.iter().map(|f| f.sentence.as_str()).collect();
     let mut text = said.join("; ");
     if !text.is_empty() {
-        text = format!("This explains it: {text}.");
+        let begin = if diagnosis.explained == Some(0.0) { "This was found" } else { "This explains it" };
+        text = format!("{begin}: {text}.");
     }
     match (diagnosis.explained, nearest) {
-        (Some(share), None) if share > 0.0 => {
+        (Some(share), _) if share > 0.0 => {
             text += &format!(" It accounts for {} of the residual.", words::share(share));
         }
-        (Some(_), None) => {
+        (Some(_), []) => {
             let begin = if text.is_empty() { "" } else { " " };
             text += &format!("{begin}None of {} hypotheses explains the residual, nor half of it.", diagnosis.tried);
         }
-        (Some(_), Some(trial)) => {
-            let (near, share) = (words::list(&trial.findings), words::share(1.0 - trial.left));
+        (Some(_), trials) => {
+            let near = trials.iter().map(|t| words::list(&t.findings)).collect::<Vec<_>>().join(" or that ");
+            let explained = 1.0 - trials.iter().map(|t| t.left).fold(0.0, f64::max);
+            let share = words::share(explained);
             let begin = if text.is_empty() { "" } else { " " };
+            let how = if explained >= NEARLY_ALL { " to the digits of the field" } else { "" };
             text += &format!(
-                "{begin}None of {} hypotheses explains the residual; the nearest, that {near}, would account for {share} of it.",
+                "{begin}None of {} hypotheses explains the residual{how}; the nearest, that {near}, would account for {share} of it.",
                 diagnosis.tried
             );
         }

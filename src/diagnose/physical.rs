@@ -7,13 +7,13 @@ use super::{Finding, Trial};
 const DECADE: [f64; 2] = [0.1, 10.0];
 /// Powers of ten up to this one are units.
 const UNITS: i32 = 9;
-/// Stiffness below zero that still counts as missing springs, relative to those that should be there.
+/// Stiffness up to this one, either way, counts as missing springs, relative to those that should be there.
 const NOTHING: f64 = 1e-3;
 /// One unknown of a hypothesis for this many numbers of the residual, or fewer: with more, it repeats what it should explain.
 const NUMBERS: usize = 4;
 
 /// True if a positive constant can be `s` times its right value: within a decade, or by a power of ten.
-fn is_mistyped(s: f64) -> bool {
+pub fn is_mistyped(s: f64) -> bool {
     let power = s.log10().round();
     let in_decade = (DECADE[0]..=DECADE[1]).contains(&s);
     s > 0.0 && (in_decade || (power.abs() <= f64::from(UNITS) && near(s, 10.0_f64.powf(power))))
@@ -30,16 +30,25 @@ impl Finding {
         let Some(value) = self.value else { return true };
         match self.name.rsplit('/').next().unwrap_or(&self.name) {
             "young" => self.expected.is_none_or(|given| is_mistyped(value / given)),
-            "poisson" => -1.0 < value && value < 0.5,
+            "poisson" => self.is_ratio(value),
             "shear" => is_mistyped(value),
-            // Springs may be missing.
-            "stiffness" | "normal" | "tangential" | "pulling" if !self.name.starts_with("body/") => {
-                value >= -NOTHING * self.expected.filter(|given| *given != 0.0).unwrap_or(1.0)
-            }
+            "stiffness" if self.name.starts_with("body/") => is_mistyped(value),
+            "pulling" => is_mistyped(value),
+            // Springs may be missing, or act where there should be none.
+            "stiffness" | "normal" | "tangential" => match self.expected {
+                Some(given) if given != 0.0 => (value / given).abs() <= NOTHING || is_mistyped(value / given),
+                _ => value > 0.0,
+            },
             // Its sign is what is mistaken most often: 1 + 2ν in place of 1 − 2ν is no change of it.
             "lambda" => value == 0.0 || is_mistyped(value.abs()),
             _ => value.is_finite(),
         }
+    }
+
+    /// True if a Poisson's ratio can be `value`: the sign of a positive one may be wrong, but no other ratio below zero is typed in its place.
+    fn is_ratio(&self, value: f64) -> bool {
+        let turned = self.expected.is_none_or(|given| given <= 0.0 || near(value, -given));
+        (if turned { -1.0 < value } else { 0.0 <= value }) && value < 0.5
     }
 
     /// True if it makes a body softer or stiffer.
@@ -80,9 +89,24 @@ mod tests {
         for young in [-1e4, 0.0, 4.8e-8, 3.7e7, f64::NAN] {
             assert!(!trial(&[("body/b/young", young, 1e4)]).is_possible(), "{young}");
         }
-        assert!(!trial(&[("body/b/poisson", 0.5, 0.3)]).is_possible());
+        for (poisson, possible) in [(0.5, false), (0.0, true), (-0.3, true), (-0.6878, false), (f64::NAN, false)] {
+            assert_eq!(trial(&[("body/b/poisson", poisson, 0.3)]).is_possible(), possible, "{poisson}");
+        }
+        assert!(trial(&[("body/b/poisson", -0.2, -0.1)]).is_possible());
         assert!(trial(&[("stiffness/lambda", -1.0, 1.0)]).is_possible());
         assert!(!trial(&[("stiffness/shear", -1.0, 1.0)]).is_possible());
+    }
+
+    #[test]
+    fn springs_may_be_missing_and_are_otherwise_within_a_decade_or_a_power_of_ten() {
+        for (found, possible) in
+            [(0.0, true), (-0.1, true), (0.052, true), (250.0, true), (5e5, true), (6e3, false), (-250.0, false)]
+        {
+            assert_eq!(trial(&[("support/foot/normal", found, 500.0)]).is_possible(), possible, "{found}");
+        }
+        assert!(!trial(&[("support/foot/tangential", 0.4919, 200.0)]).is_possible());
+        assert!(!trial(&[("support/foot/tangential", -3.0, 0.0)]).is_possible());
+        assert!(!trial(&[("body/b/stiffness", -1.0, 1.0)]).is_possible());
     }
 
     #[test]

@@ -10,6 +10,18 @@ use crate::scene::{Body, Kinematics};
 
 /// Temperatures and initial stresses that are off by a factor, body by body and all together.
 pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
+    terms_of(space, terms, |of| {
+        let materials: Vec<Option<Material>> = (0..space.problem().scene.bodies.len()).map(of).collect();
+        space.forces_of(|b, x| materials[b].as_ref().map(|material| material.held_back(x)))
+    });
+}
+
+/// As [`terms`], with the nodal forces of the stresses that the initial strains of given materials ask for.
+pub fn terms_of<'a>(
+    space: &'a Space<'a>,
+    terms: &mut Terms<'a>,
+    held: impl Fn(&dyn Fn(usize) -> Option<Material>) -> Vec<[f64; 2]>,
+) {
     let scene = &space.problem().scene;
     let warm = |body: &Body| Initial { stress: [0.0; 4], ..body.initial };
     let strained = |body: &Body| Initial { stress: body.initial.stress, ..Initial::default() };
@@ -24,8 +36,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
                 let material = Material::new(scene.kinematics, &body.elasticity);
                 counted(b).then(|| material.with_initial(scene.kinematics, &body.elasticity, &part(body)))
             };
-            let forces = space.forces_of(|b, x| of(b).map(|material| material.held_back(x)));
-            space.column(forces.into_iter().map(|f| f.map(|x| -x)).collect())
+            space.column(held(&of).into_iter().map(|f| f.map(|x| -x)).collect())
         };
         for &b in &own {
             let body = &scene.bodies[b];

@@ -4,13 +4,15 @@ use crate::compare::forces::functions::Functions;
 use crate::compare::forces::{cells, tractions};
 use crate::diagnose::fit::Terms;
 use crate::diagnose::space::Space;
-use crate::diagnose::words::{factor, near, number};
+use crate::diagnose::words::{factor, near, number, times};
 use crate::diagnose::{Finding, Trial};
 use crate::load::{Affine, BodyForce};
-use crate::scene::Body;
+use crate::scene::{Body, Traction};
 
 /// Coefficients of components that are smaller than this are none.
 const NONE: f64 = 5e-3;
+/// Squared sines of angles up to this one are of one direction.
+const ALIKE: f64 = 1e-12;
 
 /// Loads that are off by a number, one by one and all together, and body forces that the scene does not have.
 pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
@@ -30,8 +32,9 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         if thickness != 1.0 && (near(s, thickness) || near(s, 1.0 / thickness)) {
             sentence += &format!(", as if the thickness {thickness} were left out on one side");
         }
-        if s.abs() > NONE && !near(s, -1.0) {
-            sentence += &format!(" (or every Young's modulus {} times)", number(1.0 / s));
+        // No modulus is negative.
+        if s > NONE {
+            sentence += &format!(" (or every Young's modulus {} times)", times(1.0 / s));
         }
         vec![Finding::new(name, Some(s), Some(1.0), sentence)]
     };
@@ -57,8 +60,14 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         let given = [0, 1].map(|c| forces.iter().any(|f| f[c] != 0.0));
         let parts: Vec<[usize; 2]> =
             [[0, 0], [1, 1], [0, 1], [1, 0]].into_iter().filter(|[from, _]| given[*from]).collect();
-        let columns = parts.iter().map(|[from, to]| part(*from, *to)).collect();
-        terms.push(3, columns, move |x| components(&on, given, &parts, x));
+        let columns = |parts: &[[usize; 2]]| parts.iter().map(|[from, to]| part(*from, *to)).collect();
+        if given == [true; 2] {
+            let (on, own) = (on.clone(), [[0, 0], [1, 1]]);
+            terms.push(2, columns(&own), move |x| components(&on, given, &own, x));
+        }
+        if !are_proportional(forces) {
+            terms.push(3, columns(&parts), move |x| components(&on, given, &parts, x));
+        }
     }
     let origin = scene.origin;
     for (b, body) in scene.bodies.iter().enumerate() {
@@ -105,8 +114,39 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     }
 }
 
-/// Body forces with rows and columns of their gradient exchanged.
+/// Mistakes without a number: components of tractions, and gradients of body forces.
 pub fn trials(space: &Space<'_>) -> Vec<Trial> {
+    let mut trials = exchanged_axes(space);
+    trials.extend(exchanged_gradients(space));
+    trials
+}
+
+/// Tractions of two components with x and y exchanged.
+fn exchanged_axes(space: &Space<'_>) -> Vec<Trial> {
+    let of_traction = |traction: &Traction| {
+        let forces = of_traction(space, &traction.on);
+        let given = [0, 1].map(|c| forces.iter().any(|f| f[c] != 0.0));
+        let change = space.column(forces.iter().map(|[x, y]| [x - y, y - x]).collect());
+        let findings = vec![axes(&traction.on)];
+        (given == [true; 2]).then(|| Trial { rank: 1, left: space.left_with(&change), findings })
+    };
+    space.problem().scene.tractions.iter().filter_map(of_traction).collect()
+}
+
+/// The finding of x and y exchanged in the traction on `on`.
+fn axes(on: &str) -> Finding {
+    Finding::new(format!("load/{on}/axes"), None, None, format!("x and y of the load on {on} are exchanged"))
+}
+
+/// True if x and y of all forces have one ratio: then what acts along an axis can come from either.
+fn are_proportional(forces: &[[f64; 2]]) -> bool {
+    let product = |a: usize, b: usize| forces.iter().map(|f| f[a] * f[b]).sum::<f64>();
+    let (xx, yy, xy) = (product(0, 0), product(1, 1), product(0, 1));
+    xx > 0.0 && yy > 0.0 && xx * yy - xy * xy <= ALIKE * xx * yy
+}
+
+/// Body forces with rows and columns of their gradient exchanged.
+fn exchanged_gradients(space: &Space<'_>) -> Vec<Trial> {
     let of_body = |(b, body): (usize, &Body)| {
         let [[_, xy], [yx, _]] = body.body_force.given().gradient;
         if xy == yx {
@@ -155,8 +195,7 @@ fn components(on: &str, given: [bool; 2], parts: &[[usize; 2]], x: &[f64]) -> Ve
     let zero = |values: [f64; 2]| (0..2).all(|c| !given[c] || values[c].abs() < NONE);
     let one = |values: [f64; 2]| (0..2).all(|c| !given[c] || near(values[c], 1.0));
     if zero(same) && one(crossed) {
-        let sentence = format!("x and y of the load on {on} are exchanged");
-        return vec![Finding::new(format!("load/{on}/axes"), None, None, sentence)];
+        return vec![axes(on)];
     }
     let mut findings = Vec::new();
     for c in (0..2).filter(|c| given[*c]) {
@@ -204,4 +243,16 @@ fn of_body(space: &Space<'_>, body: usize, force: &BodyForce) -> Vec<[f64; 2]> {
         }
     }
     forces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forces_of_one_direction_are_proportional() {
+        assert!(are_proportional(&[[20.0, 5.0], [0.0, 0.0], [40.0, 10.0]]));
+        assert!(!are_proportional(&[[20.0, 5.0], [40.0, 11.0]]));
+        assert!(!are_proportional(&[[0.0, 5.0], [0.0, 10.0]]));
+    }
 }

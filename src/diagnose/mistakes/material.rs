@@ -2,7 +2,7 @@
 
 use crate::diagnose::fit::Terms;
 use crate::diagnose::space::{Moduli, Space};
-use crate::diagnose::words::{factor, near, number};
+use crate::diagnose::words::{factor, near, number_beside};
 use crate::diagnose::{Finding, Trial};
 use crate::element::Material;
 use crate::scene::{Body, Kinematics};
@@ -149,7 +149,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
                 let [young, poisson] =
                     Moduli::engineering(scene.kinematics, first.lambda * (1.0 + x[0]), first.mu * (1.0 + x[1]));
                 let sentence = |what: &str, found: f64, given: f64| {
-                    format!("{what} of every body is {} in place of {given}", number(found))
+                    format!("{what} of every body is {} in place of {given}", number_beside(found, given))
                 };
                 let of = |key: &str, what: &str, found: f64, given: f64| {
                     Finding::new(format!("bodies/{key}"), Some(found), Some(given), sentence(what, found, given))
@@ -168,11 +168,19 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
 pub fn told(body: &Body, [young, poisson]: [f64; 2], [given_young, given_poisson]: [f64; 2]) -> Vec<Finding> {
     let mut findings = Vec::new();
     if !near(young, given_young) {
-        let sentence = format!("Young's modulus of {} is {} in place of {}", body.name, number(young), given_young);
+        let sentence = format!(
+            "Young's modulus of {} is {} in place of {given_young}",
+            body.name,
+            number_beside(young, given_young)
+        );
         findings.push(Finding::new(format!("body/{}/young", body.name), Some(young), Some(given_young), sentence));
     }
     if !near(poisson, given_poisson) || findings.is_empty() {
-        let sentence = format!("Poisson's ratio of {} is {} in place of {}", body.name, number(poisson), given_poisson);
+        let sentence = format!(
+            "Poisson's ratio of {} is {} in place of {given_poisson}",
+            body.name,
+            number_beside(poisson, given_poisson)
+        );
         let name = format!("body/{}/poisson", body.name);
         findings.push(Finding::new(name, Some(poisson), Some(given_poisson), sentence));
     }

@@ -11,6 +11,7 @@ pub(super) mod lumped;
 pub(super) mod material;
 pub(super) mod moved;
 pub(super) mod sampled;
+pub(super) mod shift;
 pub(super) mod single;
 pub(super) mod springs;
 pub(super) mod supports;

@@ -82,20 +82,13 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         }
         if resist == [true; 2] {
             let both = times(0).iter().zip(times(1)).map(|(a, b)| a + b).collect();
-            let (name, what) = (format!("{name}/stiffness"), format!("the stiffness of {what}"));
-            let told = (name.clone(), what.clone());
+            let told = (format!("{name}/stiffness"), format!("the stiffness of {what}"));
             terms.push(1, vec![both], move |x| {
                 vec![Finding::new(told.0.clone(), Some(1.0 + x[0]), Some(1.0), factor(&told.1, 1.0 + x[0]))]
             });
+            let (name, what) = (name.clone(), what.clone());
             terms.push(2, vec![times(0), times(1)], move |x| {
-                let found = [0, 1].map(|c| (1.0 + x[c]) * given[c]);
-                let [normal, tangential] = found.map(number);
-                let mut sentence = format!("{what} is [{normal}, {tangential}]");
-                if near(found[0], given[1]) && near(found[1], given[0]) {
-                    sentence += ": normal and tangential are exchanged";
-                }
-                let at = |c: usize| Finding::new(name.clone(), Some(found[c]), Some(given[c]), sentence.clone());
-                vec![at(usize::from(near(found[0], given[0])))]
+                both_off(&name, &what, [0, 1].map(|c| (1.0 + x[c]) * given[c]), given)
             });
         } else if let Some(c) = (0..2).find(|c| !resist[*c] && bed.pairs.iter().all(|pair| pair.contact.is_none())) {
             let (name, what) = (format!("{name}/{}", DIRECTIONS[c]), what.clone());
@@ -116,4 +109,19 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
             });
         }
     }
+}
+
+/// Findings on both stiffnesses of a bed: that they are exchanged, or each by itself.
+fn both_off(name: &str, what: &str, found: [f64; 2], given: [f64; 2]) -> Vec<Finding> {
+    if near(found[0], given[1]) && near(found[1], given[0]) {
+        let [normal, tangential] = found.map(number);
+        let sentence =
+            format!("the stiffness of {what} is [{normal}, {tangential}]: normal and tangential are exchanged");
+        return vec![Finding::new(format!("{name}/stiffness"), None, None, sentence)];
+    }
+    let of = |c: usize| {
+        let sentence = factor(&format!("the {} stiffness of {what}", DIRECTIONS[c]), found[c] / given[c]);
+        Finding::new(format!("{name}/{}", DIRECTIONS[c]), Some(found[c]), Some(given[c]), sentence)
+    };
+    [0, 1].into_iter().map(of).collect()
 }

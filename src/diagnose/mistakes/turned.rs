@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::material;
-use crate::bounds::Sum;
+use super::{initial, material, shift};
+use crate::bounds::{Hold, Sum};
 use crate::compare::forces::functions::Functions;
 use crate::compare::forces::tractions;
 use crate::compare::forces::turned;
@@ -11,8 +11,10 @@ use crate::compare::forces::turned::Rule;
 use crate::diagnose::Finding;
 use crate::diagnose::Trial;
 use crate::diagnose::fit::Terms;
+use crate::diagnose::physical::is_mistyped;
 use crate::diagnose::space::{Moduli, Space};
-use crate::diagnose::words::{factor, near, number};
+use crate::diagnose::words::{factor, near, times};
+use crate::element::Material;
 use crate::problem::Problem;
 
 /// How a model counts points and the hoop.
@@ -46,12 +48,10 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     let trial = |name: &str, model: Model, weighted: bool, sentence: &str| {
         let stiffness = space.column(columns.stresses(&own, model));
         let load = &loads[usize::from(!weighted)];
-        // In which unit of length or angle loads are counted is another question.
-        let scale = if weighted { 1.0 } else { columns.fitted(&stiffness, load) };
-        let rest: f64 = stiffness.iter().zip(load).map(|(k, f)| (k - scale * f).powi(2)).sum();
-        Trial { rank: 0, left: rest / space.square, findings: vec![Finding::new(name, None, None, sentence)] }
+        let left = columns.left(&stiffness, load, weighted);
+        Trial { rank: 0, left, findings: vec![Finding::new(name, None, None, sentence)] }
     };
-    vec![
+    let mut trials = vec![
         trial("revolution/hoop", Model { hoop: false, ..RIGHT }, true, "the hoop strain u_r/r is left out"),
         trial(
             "revolution/plane-strain",
@@ -72,7 +72,9 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
             "the radius is left out of the integrals of the stiffness",
         ),
         trial("revolution/weight-of-loads", RIGHT, false, "the radius is left out of the integrals of the loads"),
-    ]
+    ];
+    trials.extend(shift::trial(space, |u| columns.hoop(u[0])));
+    trials
 }
 
 /// Constants and loads that are off by a number.
@@ -89,8 +91,8 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         let mut sentence = factor(&what, s);
         if near(s, TAU) || near(s, 1.0 / TAU) {
             sentence += ", as if 2π were left out on one side";
-        } else if s.abs() > NONE {
-            sentence += &format!(" (or every Young's modulus {} times)", number(1.0 / s));
+        } else if s > NONE {
+            sentence += &format!(" (or every Young's modulus {} times)", times(1.0 / s));
         }
         vec![Finding::new(name, Some(s), Some(1.0), sentence)]
     };
@@ -104,6 +106,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
             vec![Finding::new(format!("load/{on}"), Some(1.0 + x[0]), Some(1.0), sentence)]
         });
     }
+    initial::terms_of(space, terms, |of| columns.held(of));
     let shear =
         |body: usize, e: [f64; 4]| Some([0.0, 0.0, 0.0, space.problem().material(body).revolved().stress(e)[3]]);
     terms.push(1, vec![space.column(columns.stresses(&shear, RIGHT))], |x| {
@@ -152,11 +155,40 @@ impl<'a> Columns<'a> {
         self.space.problem()
     }
 
-    /// The scale s for which `stiffness` − s `load` is least.
-    fn fitted(&self, stiffness: &[f64], load: &[f64]) -> f64 {
+    /// Part of the squared residual that is left where `stiffness` and `load` of another model should balance. In which unit of length or
+    /// angle loads without their weight are counted is another question; but a model that carries none explains nothing, nor does one
+    /// that leaves as much as its loads are.
+    fn left(&self, stiffness: &[f64], load: &[f64], weighted: bool) -> f64 {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let square = dot(load, load);
-        if square > 0.0 { dot(stiffness, load) / square } else { 0.0 }
+        let fitted = !weighted && square > 0.0;
+        let scale = if fitted { dot(stiffness, load) / square } else { 1.0 };
+        if fitted && !is_mistyped(scale) && !is_mistyped(scale * self.mean) {
+            return 1.0;
+        }
+        let rest: f64 = stiffness.iter().zip(load).map(|(k, f)| (k - scale * f).powi(2)).sum();
+        let pulled = self.space.column(self.held(|body| Some(self.problem().material(body))));
+        let driven = if self.is_moved() { f64::INFINITY } else { scale * scale * square + dot(&pulled, &pulled) };
+        let whole = self.space.square;
+        rest / if driven > 0.0 { whole.min(driven) } else { whole }
+    }
+
+    /// True if a support prescribes a displacement.
+    fn is_moved(&self) -> bool {
+        (0..self.space.count()).any(|node| match self.space.solution.hold(node) {
+            Hold::Free => false,
+            Hold::Line { value, .. } => value != 0.0,
+            Hold::Fixed(value) => value != [0.0; 2],
+        })
+    }
+
+    /// Nodal forces ∫ s:e(φ) of the stress s that initial strains ask for, of bodies that have a material in `of`.
+    fn held(&self, of: impl Fn(usize) -> Option<Material>) -> Vec<[f64; 2]> {
+        let known: Vec<Option<Material>> = (0..self.problem().scene.bodies.len()).map(of).collect();
+        self.summed(|at| {
+            let material = known[at.body].as_ref().filter(|material| !material.initial().is_none())?;
+            Some(material.revolved().stress(material.initial().around(at.place)))
+        })
     }
 
     /// ∫ s:e(φ) of the nodes.
@@ -177,6 +209,25 @@ impl<'a> Columns<'a> {
             for (i, &node) in at.nodes.iter().enumerate() {
                 let own = at.force(i, s);
                 (0..2).for_each(|c| forces[node][c] += weight * own[c]);
+            }
+        });
+        forces
+    }
+
+    /// ∫ s:e(φ) of the stress s of the hoop strain of the radial displacement `u` of all points.
+    fn hoop(&self, u: f64) -> Vec<[f64; 2]> {
+        let materials = self.problem().materials();
+        self.summed(|at| Some(materials[at.body].revolved().stress([0.0, 0.0, u / at.radius, 0.0])))
+    }
+
+    /// ∫ s:e(φ) of the nodes for a stress at every point.
+    fn summed(&self, stress: impl Fn(&turned::At<'_>) -> Option<[f64; 4]>) -> Vec<[f64; 2]> {
+        let mut forces = vec![[0.0; 2]; self.space.count()];
+        turned::points(self.problem(), self.space.solution.candidate, self.rule, |at| {
+            let Some(s) = stress(at) else { return };
+            for (i, &node) in at.nodes.iter().enumerate() {
+                let own = at.force(i, s);
+                (0..2).for_each(|c| forces[node][c] += at.weight * at.radius * own[c]);
             }
         });
         forces

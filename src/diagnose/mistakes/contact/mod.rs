@@ -1,5 +1,6 @@
 //! Contact that is no unilateral, frictionless contact: penalties, gaps, friction, glue.
 
+mod bound;
 mod penalty;
 mod rubbing;
 mod tangential;
