@@ -131,10 +131,29 @@ def by_calculix(folder, told):
             told.append({"file": f"{job}.frd", "maker": "CalculiX", "cells": f"{kind} {name}"})
 
 
+def by_abaqus(folder, told):
+    """In the manner of Abaqus/CAE: a part whose sets have the names of the assembly's, and a reference point; and shells with surfaces."""
+    points, cells, ends = grid("quad")
+    rows = [", ".join(str(n) for n in [i + 1, *(cell + 1)]) for i, cell in enumerate(cells)]
+    part = ["*Heading", "*Part, name=Plate", "*Node", *(f"{i + 1}, {x - 5!r}, {y!r}" for i, (x, y, _) in enumerate(points.tolist())),
+            "*Element, type=CPE4R", *rows, "*Nset, nset=WALL, generate", f"1, {len(points)}, 1", "*Elset, elset=Set-1, generate",
+            f"1, {len(cells)}, 1", "*End Part", "*Assembly, name=Assembly", "*Instance, name=Plate-1, part=Plate", "5., 0., 0.",
+            "*End Instance", "*Node", "1, 9., 9., 0.", "*Nset, nset=RP-1", "1,", "*Nset, nset=WALL, instance=Plate-1",
+            ", ".join(str(n + 1) for n in np.unique(ends[0])), "*Nset, nset=_right, internal, instance=Plate-1",
+            ", ".join(str(n + 1) for n in np.unique(ends[1])), "*Nset, nset=LOAD", "_right", "*End Assembly", "*Step", "*Static", "*End Step", ""]
+    (folder / "cae.inp").write_text("\n".join(part), encoding="utf-8")
+    told.append({"file": "cae.inp", "maker": "hand", "cells": "CPE4R of an instance", "body": "Plate-1", "ends": ENDS})
+    shells = ["*NODE", *(f"{i + 1}, {x!r}, {y!r}, 0." for i, (x, y, _) in enumerate(points.tolist())), "*ELEMENT, TYPE=S4, ELSET=Plate", *rows,
+              "*ELSET, ELSET=left, GENERATE", f"1, {len(cells)}, {NX}", "*ELSET, ELSET=right, GENERATE", f"{NX}, {len(cells)}, {NX}",
+              "*SURFACE, NAME=WALL", "left, S6", "*SURFACE, NAME=LOAD", "right, E2", ""]
+    (folder / "shells.inp").write_text("\n".join(shells), encoding="utf-8")
+    told.append({"file": "shells.inp", "maker": "hand", "cells": "S4", "body": "Plate", "ends": ENDS})
+
+
 def main():
     folder = pathlib.Path(sys.argv[1])
     told = []
-    for make in (by_meshio, by_scikit_fem, by_getfem, by_calculix):
+    for make in (by_meshio, by_scikit_fem, by_getfem, by_calculix, by_abaqus):
         make(folder, told)
     print(json.dumps(told))
 

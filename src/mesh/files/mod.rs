@@ -2,6 +2,7 @@
 
 pub(super) mod abaqus;
 pub(super) mod content;
+mod encoding;
 pub(super) mod file;
 pub mod foreign;
 pub mod gmsh;

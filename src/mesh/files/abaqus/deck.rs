@@ -1,8 +1,10 @@
-//! The lines of a deck: keywords with their parameters and data.
+//! The keywords of a deck and of the files that it includes.
 
 use std::path::{Path, PathBuf};
 
+use super::super::encoding::{SAVE_AS_UTF8, text};
 use super::DAMAGED;
+use super::keyword::{Keyword, Line, Place, shown};
 use crate::mesh::MeshError;
 
 /// Depth of included files.
@@ -10,175 +12,104 @@ const DEEPEST: usize = 10;
 /// Most bytes of all files of a deck.
 const LARGEST: usize = 2 << 30;
 
-/// `*NAME, KEY=VALUE, …` and the data lines below it.
-pub(super) struct Keyword<'a> {
-    /// In upper case, with single blanks.
-    pub name: String,
-    /// Keys in upper case; a key without a value has an empty one.
-    parameters: Vec<(String, String)>,
-    pub lines: Vec<Line<'a>>,
-    place: (PathBuf, usize),
-    root: &'a Path,
-}
-
-/// Data of a keyword.
-pub(super) struct Line<'a> {
-    /// Without surrounding blanks; an empty one at the end is left out.
-    pub fields: Vec<String>,
-    place: (PathBuf, usize),
-    root: &'a Path,
-}
-
-/// The keywords of a deck and of the files that it includes.
-pub(super) struct Deck;
-
-impl Deck {
-    /// # Errors
-    /// An included file that cannot be read, or text before the first keyword.
-    pub fn read<'a>(text: &[u8], file: &'a Path) -> Result<Vec<Keyword<'a>>, MeshError> {
-        let (mut keywords, mut size) = (Vec::new(), 0);
-        add(text, file, file, 0, &mut size, &mut keywords)?;
-        if keywords.is_empty() {
-            return Err(MeshError::file(file, "the file has no keyword (*NODE, *ELEMENT)", DAMAGED));
-        }
-        Ok(keywords)
+/// The keywords of the deck in `bytes` that stand before its first `*STEP`: what follows is no part of the mesh.
+///
+/// # Errors
+/// An included file that cannot be read, or text before the first keyword.
+pub(super) fn read(bytes: &[u8], file: &Path) -> Result<Vec<Keyword>, MeshError> {
+    let mut deck = Deck { root: file, size: 0, keywords: Vec::new(), ended: false };
+    deck.add(bytes, file, 0)?;
+    if deck.keywords.is_empty() && !deck.ended {
+        return Err(MeshError::file(file, "the file has no keyword (*NODE, *ELEMENT)", DAMAGED));
     }
+    Ok(deck.keywords)
 }
 
-fn add<'a>(
-    text: &[u8],
-    file: &Path,
+struct Deck<'a> {
     root: &'a Path,
-    depth: usize,
-    size: &mut usize,
-    keywords: &mut Vec<Keyword<'a>>,
-) -> Result<(), MeshError> {
-    *size += text.len();
-    if *size > LARGEST || depth > DEEPEST {
-        return Err(MeshError::file(root, "its included files are too large or include each other", DAMAGED));
-    }
-    let text = String::from_utf8_lossy(text);
-    let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
-    while let Some((number, line)) = lines.next() {
-        if line.is_empty() || line.starts_with("**") {
-            continue;
+    /// Bytes read so far.
+    size: usize,
+    keywords: Vec<Keyword>,
+    /// True once the first step begins.
+    ended: bool,
+}
+
+impl Deck<'_> {
+    fn add(&mut self, bytes: &[u8], file: &Path, depth: usize) -> Result<(), MeshError> {
+        self.size = self.size.saturating_add(bytes.len());
+        if self.size > LARGEST || depth > DEEPEST {
+            let what = "its included files are too large or include each other";
+            return Err(MeshError::file(self.root, what, DAMAGED));
         }
-        let place = (file.to_path_buf(), number);
-        let Some(head) = line.strip_prefix('*') else {
-            let fields = fields(line);
-            match keywords.last_mut() {
-                Some(keyword) => keyword.lines.push(Line { fields, place, root }),
-                None => return Err(fault(&place, root, "data stand before the first keyword", DAMAGED)),
+        let start = Place::start(file, self.root);
+        let bytes = text(bytes).map_err(|found| start.fault(format!("the file is {found}"), SAVE_AS_UTF8))?;
+        let text = String::from_utf8_lossy(bytes);
+        let mut lines = (1..).zip(text.lines().map(str::trim)).peekable();
+        while let Some((number, line)) = lines.next() {
+            if line.is_empty() || line.starts_with("**") {
+                continue;
             }
-            continue;
-        };
-        let mut head = head.to_owned();
-        while head.ends_with(',') {
-            match lines.next() {
-                Some((_, more)) if !more.starts_with('*') => head.push_str(more),
-                _ => break,
+            let place = start.at(number);
+            let Some(head) = line.strip_prefix('*') else {
+                self.data(line, place)?;
+                continue;
+            };
+            // A line that ends with a comma goes on in the next.
+            let mut head = head.to_owned();
+            while head.ends_with(',') {
+                let Some((_, more)) = lines.next_if(|(_, more)| !more.starts_with('*')) else { break };
+                head.push_str(more);
+            }
+            self.keyword(Keyword::new(&head, place), file, depth)?;
+            if self.ended {
+                break;
             }
         }
-        let mut parts = split(&head).into_iter();
-        let name =
-            parts.next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
-        let parameters = parts
-            .map(|part| match part.split_once('=') {
-                Some((key, value)) => (key.trim().to_ascii_uppercase(), value.trim().trim_matches('"').to_owned()),
-                None => (part.trim().to_ascii_uppercase(), String::new()),
-            })
-            .collect();
-        let keyword = Keyword { name, parameters, lines: Vec::new(), place, root };
-        if keyword.name != "INCLUDE" {
-            keywords.push(keyword);
-            continue;
+        Ok(())
+    }
+
+    fn data(&mut self, line: &str, place: Place) -> Result<(), MeshError> {
+        match self.keywords.last_mut() {
+            Some(keyword) => keyword.lines.push(Line::new(line, place)),
+            None => {
+                let what = format!("data stand before the first keyword: found '{}'", shown(line));
+                return Err(place.fault(what, "take the line out, or begin it with ** if it is a comment"));
+            }
         }
-        let Some(input) = keyword.parameter("INPUT") else {
-            return Err(keyword.fault("*INCLUDE has no INPUT=", DAMAGED));
-        };
-        let included = file.parent().unwrap_or(Path::new("")).join(input);
-        if !std::fs::metadata(&included).is_ok_and(|kind| kind.is_file()) {
-            let what = format!("the included file {} is not there", included.display());
-            return Err(keyword.fault(what, "put it beside the deck, or correct INPUT="));
+        Ok(())
+    }
+
+    fn keyword(&mut self, keyword: Keyword, file: &Path, depth: usize) -> Result<(), MeshError> {
+        match keyword.name.as_str() {
+            "STEP" => self.ended = true,
+            "INCLUDE" => {
+                let included = self.included(&keyword, file)?;
+                let bytes = std::fs::read(&included).map_err(|e| {
+                    let what = format!("the included file {} cannot be read: {e}", included.display());
+                    keyword.fault(what, "check its permissions")
+                })?;
+                self.add(&bytes, &included, depth + 1)?;
+            }
+            _ => self.keywords.push(keyword),
         }
-        let bytes = std::fs::read(&included).map_err(|e| {
-            keyword
-                .fault(format!("the included file {} cannot be read: {e}", included.display()), "check its permissions")
-        })?;
-        add(&bytes, &included, root, depth + 1, size, keywords)?;
-    }
-    Ok(())
-}
-
-fn fields(line: &str) -> Vec<String> {
-    let mut fields: Vec<String> =
-        split(line).into_iter().map(|field| field.trim().trim_matches('"').to_owned()).collect();
-    while fields.last().is_some_and(String::is_empty) {
-        fields.pop();
-    }
-    fields
-}
-
-/// Parts between commas that stand outside quotation marks.
-fn split(line: &str) -> Vec<&str> {
-    let mut quoted = false;
-    line.split(|c| {
-        quoted ^= c == '"';
-        c == ',' && !quoted
-    })
-    .collect()
-}
-
-fn fault(place: &(PathBuf, usize), root: &Path, what: impl Into<String>, remedy: &str) -> MeshError {
-    let (file, line) = place;
-    let place = match file == root {
-        true => format!("line {line}"),
-        false => format!("line {line} of {}", file.display()),
-    };
-    MeshError::Format { file: root.to_path_buf(), place, what: what.into(), remedy: remedy.to_owned() }
-}
-
-impl Keyword<'_> {
-    /// The value of a parameter.
-    pub fn parameter(&self, key: &str) -> Option<&str> {
-        self.parameters.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
+        Ok(())
     }
 
-    pub fn fault(&self, what: impl Into<String>, remedy: &str) -> MeshError {
-        fault(&self.place, self.root, what, remedy)
-    }
-}
-
-impl Line<'_> {
-    pub fn fault(&self, what: impl Into<String>, remedy: &str) -> MeshError {
-        fault(&self.place, self.root, what, remedy)
-    }
-
-    /// Field `i` as a whole number that is not negative.
-    pub fn whole(&self, i: usize) -> Result<u64, MeshError> {
-        self.parsed(i, "whole number")
-    }
-
-    /// Field `i` as a finite number; an empty one is zero.
-    pub fn number(&self, i: usize) -> Result<f64, MeshError> {
-        if self.fields.get(i).is_some_and(String::is_empty) {
-            return Ok(0.0);
-        }
-        // Fortran writes 1.5D0 too.
-        let text = self.fields.get(i).map(|field| field.replace(['d', 'D'], "e"));
-        match text.and_then(|text| text.parse::<f64>().ok()).filter(|x| x.is_finite()) {
-            Some(number) => Ok(number),
-            None => Err(self.not_a(i, "number")),
-        }
-    }
-
-    fn parsed<T: std::str::FromStr>(&self, i: usize, kind: &str) -> Result<T, MeshError> {
-        self.fields.get(i).and_then(|field| field.parse().ok()).ok_or_else(|| self.not_a(i, kind))
-    }
-
-    fn not_a(&self, i: usize, kind: &str) -> MeshError {
-        let found = self.fields.get(i).map_or("nothing", String::as_str);
-        let found: String = found.chars().take(40).filter(|c| !c.is_control()).collect();
-        self.fault(format!("found '{found}' where a {kind} should be"), DAMAGED)
+    /// The file that `*INCLUDE` in `file` names: beside that file, or else in the folder of the deck. Windows writes `\` in it.
+    fn included(&self, keyword: &Keyword, file: &Path) -> Result<PathBuf, MeshError> {
+        let input = keyword.required("INPUT")?;
+        let spellings = [input.to_owned(), input.replace('\\', "/")];
+        let folders = [file, self.root].map(|file| file.parent().unwrap_or(Path::new("")));
+        let candidates = folders.iter().flat_map(|folder| spellings.iter().map(move |input| folder.join(input)));
+        let is_file = |path: &PathBuf| std::fs::metadata(path).is_ok_and(|kind| kind.is_file());
+        candidates.into_iter().find(is_file).ok_or_else(|| {
+            let told = folders[0].join(input);
+            let also = match folders[0] == folders[1] {
+                true => String::new(),
+                false => format!(", nor is {}", folders[1].join(input).display()),
+            };
+            let what = format!("the included file {} is not there{also}", told.display());
+            keyword.fault(what, "put it beside the deck, or correct INPUT=")
+        })
     }
 }

@@ -13,18 +13,24 @@ use std::path::Path;
 use cursor::{Cursor, Encoding, shortened};
 
 use super::content::Content;
+use super::{abaqus, encoding};
 use crate::mesh::{MeshError, RawMesh};
 use crate::scene::Note;
 
 const SAVE_AGAIN: &str = "save it as MSH 4.1 or 2.2 (gmsh -save -format msh41)";
 
-/// Reads the bytes of a `.msh` file; `file` is for messages.
+/// Reads the bytes of a `.msh` file; `file` is for messages. CalculiX GraphiX writes decks with this ending too.
 ///
 /// # Errors
 /// [`MeshError::Format`] with section and line or byte, or [`MeshError::File`].
 pub fn parse(bytes: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(MeshError::file(file, "the file is empty", SAVE_AGAIN));
+    }
+    let bytes = encoding::text(bytes)
+        .map_err(|found| MeshError::file(file, format!("the file is {found}"), encoding::SAVE_AS_UTF8))?;
+    if abaqus::is_deck(bytes) {
+        return abaqus::parse(bytes, file);
     }
     let mut cursor = Cursor::new(bytes, file);
     let mut content = Content::default();

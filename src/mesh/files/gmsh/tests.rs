@@ -195,6 +195,24 @@ fn files_that_are_refused() {
     refuse(&marked, &["byte order mark", "write it again"]);
 }
 
+#[test]
+fn a_byte_order_mark_is_skipped_and_a_deck_is_read() {
+    for name in [BLOCKS[2], BLOCKS[0]] {
+        let bytes = [&[0xEF, 0xBB, 0xBF], fixture(name).as_slice()].concat();
+        assert_eq!(parse(&bytes, Path::new(name)).expect("a mark").0, read(name));
+    }
+    let wide: Vec<u8> = "\u{feff}$MeshFormat\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    refuse(&wide, &["UTF-16", "UTF-8"]);
+    // CalculiX GraphiX: send all abq.
+    let deck = "*NODE, NSET=Nall\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n*ELEMENT, TYPE=CPS4, ELSET=Eall\n1,1,2,3,4\n";
+    for text in [deck.to_owned(), format!("** written by cgx\n{deck}"), format!("\u{feff}\n{deck}")] {
+        let raw = parse(text.as_bytes(), Path::new("all.msh")).expect("a deck").0;
+        assert_eq!((raw.points.len(), raw.triangles.len()), (4, 2));
+        assert!(raw.triangles.iter().all(|(_, name)| name == "Eall"));
+    }
+    refuse(deck.replace("1,1,2,3,4", "1,1,2,3").as_bytes(), &["line 7", "3 nodes, not 4"]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
 

@@ -1,12 +1,55 @@
 //! Decks in the manner of the manual.
 
+mod assemblies;
+mod files;
+mod surfaces;
+
 use std::path::Path;
 
 use super::parse;
 use crate::mesh::RawMesh;
 
+/// Two quadrilaterals on (0, 2) × (0, 1): nodes 1 to 3 below, 4 to 6 above.
+const NODES: &str = "*NODE\n1, 0, 0\n2, 1, 0\n3, 2, 0\n4, 0, 1\n5, 1, 1\n6, 2, 1\n";
+const CELLS: &str = "1, 1, 2, 5, 4\n2, 2, 3, 6, 5\n";
+
 fn read(text: &str) -> RawMesh {
-    parse(text.as_bytes(), Path::new("deck.inp")).expect("a deck").0
+    read_with_notes(text).0
+}
+
+/// The mesh, and the notes on what was left out.
+fn read_with_notes(text: &str) -> (RawMesh, Vec<String>) {
+    let (raw, notes) = parse(text.as_bytes(), Path::new("deck.inp")).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let notes = notes.into_iter().map(|note| note.text).filter(|text| !text.contains("cut into triangles"));
+    (raw, notes.collect())
+}
+
+/// A deck of one part of two cells: of elements `kind`, with `sets` behind them.
+fn plate(kind: &str, sets: &str) -> String {
+    format!("{NODES}*ELEMENT, TYPE={kind}, ELSET=E\n{CELLS}{sets}")
+}
+
+/// The points of a node set, in order of their numbers.
+#[track_caller]
+fn points(raw: &RawMesh, set: &str) -> Vec<[f64; 2]> {
+    let (_, nodes) = raw.sets.nodes.iter().find(|(name, _)| name == set).unwrap_or_else(|| panic!("no set {set}"));
+    nodes.iter().map(|&v| raw.points[v]).collect()
+}
+
+/// The ends of the sides of a surface.
+#[track_caller]
+fn sides(raw: &RawMesh, surface: &str) -> Vec<[[f64; 2]; 2]> {
+    let found = raw.sets.surfaces.iter().find(|(name, _)| name == surface);
+    let (_, sides) = found.unwrap_or_else(|| panic!("no surface {surface}"));
+    sides.iter().map(|side| side.map(|v| raw.points[v])).collect()
+}
+
+/// The heights of the centres of the triangles of a name.
+fn heights(raw: &RawMesh, name: &str) -> Vec<f64> {
+    let height = |t: &[usize; 3]| t.iter().map(|&v| raw.points[v][1]).sum::<f64>() / 3.0;
+    let own = raw.triangles.iter().filter(|(_, of)| of == name).map(|(t, _)| height(t));
+    let lists = raw.shared.iter().filter(|list| list.names.iter().any(|of| of == name));
+    own.chain(lists.flat_map(|list| list.triangles.iter().map(height))).collect()
 }
 
 #[track_caller]
