@@ -78,7 +78,7 @@ fn a_shared_curve_in_two_groups_is_a_contact() {
 }
 
 #[test]
-fn other_formats_come_through_meshio() {
+fn blocks_of_medit_and_abaqus() {
     let file = meshes().join("two_blocks_medit.mesh");
     check_blocks(&Problem::load(scene(file, ["1", "2"], ["4", "7", "5", "6"])).expect("a good file"), 5);
     let file = meshes().join("two_blocks_abaqus.inp");

@@ -7,9 +7,9 @@ use hypercircle::problem::{Condition, Problem};
 use hypercircle::scene::{Body, Draft, Kinematics, Load, MeshSource, Scene, Support, SupportKind, Traction};
 
 /// The plate (0, 2) × (0, 1): a quadrilateral on the left, two triangles on the right, numbered from one.
-const POINTS: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]];
+pub const POINTS: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]];
 
-fn scene(mesh: PathBuf, bodies: &[&str], [wall, load]: [&str; 2]) -> Scene {
+pub fn scene(mesh: PathBuf, bodies: &[&str], [wall, load]: [&str; 2]) -> Scene {
     let body = |name: &&str| Body::isotropic(*name, 1.0, 0.3);
     let draft = Draft {
         bodies: bodies.iter().map(body).collect(),
@@ -22,7 +22,7 @@ fn scene(mesh: PathBuf, bodies: &[&str], [wall, load]: [&str; 2]) -> Scene {
 
 /// Checks area, the wall at x = 0 and the load at x = 2.
 #[track_caller]
-fn check(path: &Path, bodies: &[&str], names: [&str; 2]) {
+pub fn check(path: &Path, bodies: &[&str], names: [&str; 2]) {
     let problem =
         Problem::load(scene(path.into(), bodies, names)).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let area: f64 = (0..problem.mesh.triangles.len()).map(|t| problem.mesh.area(t)).sum();
@@ -43,14 +43,14 @@ fn check(path: &Path, bodies: &[&str], names: [&str; 2]) {
     }
 }
 
-struct Folder(tempfile::TempDir);
+pub struct Folder(pub tempfile::TempDir);
 
 impl Folder {
-    fn new() -> Folder {
+    pub fn new() -> Folder {
         Folder(tempfile::tempdir().expect("a folder"))
     }
 
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
         let path = self.0.path().join(name);
         std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
         std::fs::write(&path, bytes).expect("a file");
@@ -58,11 +58,11 @@ impl Folder {
     }
 }
 
-fn rows(line: impl Fn(usize, [f64; 2]) -> String) -> String {
+pub fn rows(line: impl Fn(usize, [f64; 2]) -> String) -> String {
     POINTS.iter().enumerate().map(|(i, p)| line(i + 1, *p)).collect()
 }
 
-fn unv(groups: &str) -> String {
+pub fn unv(groups: &str) -> String {
     let nodes = rows(|n, [x, y]| format!("{n:10}         1         1        11\n{x:25.16E}{y:25.16E}{:25.16E}\n", 0.0));
     let nodes = nodes.replace('E', "D+0");
     let beam = |n: usize, a: usize, b: usize| {
@@ -108,8 +108,9 @@ fn nine_nodes_of_unv_are_told_by_where_they_lie() {
     }
 }
 
-fn unv_groups(dataset: &str) -> String {
-    let member = |kind: usize, tag: usize| format!("{kind:10}{tag:10}         0         0");
+pub fn unv_groups(dataset: &str) -> String {
+    let rest = if ["2417", "2429"].contains(&dataset) { "" } else { "         0         0" };
+    let member = |kind: usize, tag: usize| format!("{kind:10}{tag:10}{rest}");
     let group = |number: usize, name: &str, count: usize| {
         format!("{number:10}         0         0         0         0         0         0{count:10}\n{name}\n")
     };
@@ -129,7 +130,7 @@ fn unv_groups(dataset: &str) -> String {
 #[test]
 fn ideas_universal_files() {
     let folder = Folder::new();
-    for dataset in ["2467", "2477", "2435", "2452"] {
+    for dataset in ["2467", "2477", "2435", "2452", "2417", "2429"] {
         let path = folder.write(&format!("{dataset}.unv"), unv(&unv_groups(dataset)));
         check(&path, &["PLATE"], ["wall side", "LOAD"]);
     }
@@ -216,10 +217,10 @@ fn folders_of_elmer() {
 }
 
 /// Name, dimensions, name of a set, type and bytes of a variable.
-type Variable<'a> = (&'a str, &'a [u32], &'a str, u32, Vec<u8>);
+pub type Variable<'a> = (&'a str, &'a [u32], &'a str, u32, Vec<u8>);
 
 /// A classic netCDF file: dimensions, and variables with their dimensions, an attribute, the type, and the bytes.
-fn netcdf(dimensions: &[(&str, u32)], variables: &[Variable]) -> Vec<u8> {
+pub fn netcdf(dimensions: &[(&str, u32)], variables: &[Variable]) -> Vec<u8> {
     let padded = |bytes: &[u8]| [bytes, &[0; 3][..(4 - bytes.len() % 4) % 4]].concat();
     let word = |n: u32| n.to_be_bytes().to_vec();
     let name = |s: &str| [word(s.len() as u32), padded(s.as_bytes())].concat();
@@ -288,7 +289,7 @@ fn exodus_files() {
     }
 }
 
-fn vtu(cell_data: &str) -> String {
+pub fn vtu(cell_data: &str) -> String {
     let points = rows(|_, [x, y]| format!("{x} {y} 0 "));
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"6\" \

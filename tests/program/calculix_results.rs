@@ -123,6 +123,46 @@ fn results_of_calculix_are_its_solutions() {
     certified(folder.path(), "p.dat", &DAT.replace("-9.306751E-03", "-9.506751E-03"), 1, &[]);
 }
 
+/// The result as a layer of prisms between two faces at `height` of x on both sides, which move apart by `across` each (OUTPUT=3D).
+fn in_space(height: impl Fn(f64) -> f64, across: f64) -> String {
+    let (nodes, rest) = FRD.split_once(" -3\n").expect("a block of nodes");
+    let (cells, values) = rest.split_once(" -3\n").expect("a block of cells");
+    let doubled = |block: &str, last: &dyn Fn(f64) -> f64| -> String {
+        let side = |line: &str, sign: f64| {
+            let tag: usize = line[3..13].trim().parse().expect("a number");
+            let first: f64 = line[13..25].trim().parse().expect("a number");
+            let tag = if sign < 0.0 { tag } else { tag + 6 };
+            format!(" -1{tag:>10}{}{:>12.7}\n", &line[13..37], sign * last(first))
+        };
+        let line = |line: &str| match line.starts_with(" -1") {
+            true => side(line, -1.0) + &side(line, 1.0),
+            false => format!("{line}\n"),
+        };
+        block.lines().map(line).collect()
+    };
+    let prism = |line: &str| match line.strip_prefix(" -2") {
+        Some(tags) => {
+            let high = tags.split_whitespace().map(|tag| tag.parse::<usize>().expect("a number") + 6);
+            format!("{line}{}\n", high.map(|tag| format!("{tag:>10}")).collect::<String>())
+        }
+        None => line.replace("    7    0", "    2    0") + "\n",
+    };
+    let cells: String = cells.lines().map(prism).collect();
+    [doubled(nodes, &height), cells, doubled(values, &|_| across)].join(" -3\n")
+}
+
+#[test]
+fn layers_in_space_are_the_plane_between_their_faces() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("job.toml"), SCENE).expect("writable");
+    std::fs::write(folder.path().join("p.inp"), DECK).expect("writable");
+    certified(folder.path(), "p.frd", &in_space(|_| 0.5, 0.0), 0, &[]);
+    // In plane stress the faces move apart.
+    certified(folder.path(), "p.frd", &in_space(|_| 0.5, 1e-3), 0, &[]);
+    // The wedge of axisymmetric elements.
+    certified(folder.path(), "p.frd", &in_space(|x| x * 0.0174551, 0.0), 2, &["axisymmetric elements", "OUTPUT=2D"]);
+}
+
 #[test]
 fn results_without_displacements_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -14,8 +14,6 @@ GROUPING = ["gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "name_to
 # Words in what other programs call such integers, and numbers that are something else.
 TELLING = ["physical", "material", "entity", "entities", "geometryid", "region", "domain", "subdomain", "boundar", "marker", "label", "group", "tag", "block", "part", "zone"]
 NO_GROUPS = {"gmsh:geometrical", "vtkOriginalCellIds", "vtkGhostType", "partition", "rank", "GlobalElementId", "GlobalCellIds", "ids", "vtkIdFilter_Ids"}
-# Suffixes of Nastran decks.
-NASTRAN = (".bdf", ".nas", ".fem")
 # Suffixes that meshio does not know and Gmsh reads.
 ONLY_GMSH = {".geo", ".diff", ".p3d", ".neu"}
 
@@ -32,33 +30,21 @@ def whole_numbers(blocks):
     return found
 
 
-def read_nastran(source):
-    """A Nastran deck; one without its first words, as Gmsh writes it, is bulk data from its first line on."""
-    import meshio
-
-    with open(source, encoding="utf-8", errors="replace") as file:
-        text = file.read()
-    if any(line.strip().upper().startswith("BEGIN BULK") for line in text.splitlines()):
-        return meshio.read(source)
-    with tempfile.TemporaryDirectory() as folder:
-        whole = os.path.join(folder, "whole.bdf")
-        with open(whole, "w", encoding="utf-8") as out:
-            out.write("BEGIN BULK\n" + text)
-        return meshio.read(whole)
-
-
-def from_meshio(source):
+def from_meshio(source, target):
     """Points, blocks, node sets and numbers of groups, as meshio has them."""
-    import meshio
-
-    mesh = meshio.read(source) if not source.lower().endswith(NASTRAN) else read_nastran(source)
+    mesh = read_with_meshio(source, target)
     blocks = {name: whole_numbers(blocks) for name, blocks in mesh.cell_data.items() if name not in NO_GROUPS}
     whole = [name for name, found in blocks.items() if found is not None]
     # Of several numbers, those that the format has for groups, then those that are called so, then the only ones that differ.
     told = [name for name in whole if any(word in name.lower() for word in TELLING)]
-    differ = [name for name in whole if len({int(x) for block in blocks[name] for x in block}) > 1]
-    chosen = next((found[0] for found in ([n for n in GROUPING if n in whole], told, differ if len(differ) == 1 else [], whole if len(whole) == 1 else []) if found), None)
+    found = {name: [x for block in blocks[name] for x in block] for name in whole}
+    # Numbers that are all different are those of the cells.
+    others = [name for name in whole if name in told or len(found[name]) < 3 or len(set(found[name])) < len(found[name])]
+    differ = [name for name in others if len(set(found[name])) > 1]
+    chosen = next((names[0] for names in ([n for n in GROUPING if n in whole], told, differ if len(differ) == 1 else [], others if len(others) == 1 else []) if names), None)
     numbers_of = blocks.get(chosen)
+    # In the formats that have numbers for groups, zero is none.
+    none = {0} if chosen in GROUPING or not any(found.get(chosen, [])) else set()
     names = {(int(dim), int(tag)): name for name, (tag, dim) in mesh.field_data.items()}
     families = getattr(mesh, "cell_tags", {}) or {}
 
@@ -69,11 +55,13 @@ def from_meshio(source):
             if not name.startswith("gmsh:") and block < len(sets) and sets[block] is not None:
                 for cell in sets[block]:
                     result[int(cell)].append(name)
+                if name.isdigit() and len(sets[block]) > 0 and shape in SHAPES.values():
+                    names.setdefault((1 if shape == "line" else 2, int(name)), name)
         if chosen is not None:
             for found, tag in zip(result, numbers_of[block]):
                 tag = int(tag)
                 dimension = 1 if shape == "line" else 2
-                if tag and (dimension, tag) not in names and tag not in families and shape in SHAPES.values():
+                if tag not in none and (dimension, tag) not in names and tag not in families and shape in SHAPES.values():
                     names[dimension, tag] = str(tag)
                 more = families.get(tag) or [names.get((dimension, tag))]
                 if not found:
@@ -156,10 +144,12 @@ def main():
             print(error, file=sys.stderr)
             sys.exit(44)
         try:
-            found = from_meshio(source)
+            found = from_meshio(source, target)
         except ModuleNotFoundError as error:
             print(error.name, file=sys.stderr)
             sys.exit(45)
+        except Unreadable as error:
+            refuse(str(error))
     with open(target, "w", encoding="utf-8") as out:
         json.dump(found, out)
 

@@ -16,12 +16,14 @@ use crate::scene::Note;
 const SCRIPT: &str = concat!(
     include_str!("readers/lean.py"),
     include_str!("readers/found.py"),
+    include_str!("readers/xdmf.py"),
     include_str!("readers/unv.py"),
     include_str!("readers/text.py"),
     include_str!("readers/exodus.py"),
     include_str!("readers/med.py"),
     include_str!("readers/frd.py"),
     include_str!("readers/choose.py"),
+    include_str!("readers/nastran.py"),
     include_str!("foreign.py")
 );
 const INSTEAD: &str = "convert it to Gmsh's format (.msh)";

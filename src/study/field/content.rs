@@ -13,6 +13,7 @@ use crate::study::dossier::provenance::hash;
 const SCRIPT: &str = concat!(
     include_str!("../../mesh/files/readers/lean.py"),
     include_str!("../../mesh/files/readers/found.py"),
+    include_str!("../../mesh/files/readers/xdmf.py"),
     include_str!("../../mesh/files/readers/unv.py"),
     include_str!("../../mesh/files/readers/text.py"),
     include_str!("../../mesh/files/readers/exodus.py"),

@@ -26,5 +26,6 @@ def own_fields(source):
     for name, rows in found.fields.items():
         displacement = "depl" in name.lower() or name.lower().startswith("disp")
         fields["displacement" if displacement and "displacement" not in fields else name] = numpy.array(rows, dtype=float)
-    cells = [meshio.CellBlock(kind, numpy.array(nodes)) for (kind, _), nodes in blocks.items()]
+    # meshio's blocks take no kind that it does not know.
+    cells = [types.SimpleNamespace(type=kind, data=numpy.array(nodes)) for (kind, _), nodes in blocks.items()]
     return numpy.array(found.points, dtype=float), cells, fields, False

@@ -4,7 +4,6 @@ import contextlib
 import io
 import json
 import math
-import re
 import sys
 
 try:
@@ -14,22 +13,6 @@ except ImportError as error:
     sys.exit(44)
 
 source, target = sys.argv[1:]
-
-
-def readable():
-    """The file to read: meshio refuses VTU of version 2, which newer VTK writes and which differs in nothing it needs."""
-    if not source.lower().endswith(".vtu"):
-        return source
-    with open(source, "rb") as file:
-        content = file.read()
-    head, rest = content[:500], content[500:]
-    older = re.sub(rb'(<VTKFile[^>]*\bversion=)"2\.\d+"', rb'\1"1.0"', head)
-    if older == head:
-        return source
-    copy = target + ".vtu"
-    with open(copy, "wb") as file:
-        file.write(older + rest)
-    return copy
 
 
 def missing(error):
@@ -58,19 +41,12 @@ def read():
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            mesh = meshio.read(readable())
+            mesh = read_with_meshio(source, target)
     except ModuleNotFoundError as error:
         missing(error)
+    except Unreadable as error:
+        refuse(str(error))
     except (Exception, SystemExit) as error:
-        if source.lower().endswith((".xdmf", ".xmf")):
-            try:
-                with meshio.xdmf.TimeSeriesReader(source) as series:
-                    points, cells = series.read_points_cells()
-                    return points, cells, series.read_data(series.num_steps - 1)[1], False
-            except ModuleNotFoundError as lacking:
-                missing(lacking)
-            except Exception:
-                pass
         lines = [line.strip() for line in said.getvalue().splitlines() if line.strip()]
         sys.exit(str(error) if isinstance(error, Exception) and str(error) else (lines or ["no message"])[0])
     return given(mesh) or (mesh.points, mesh.cells, mesh.point_data, False)
@@ -83,12 +59,11 @@ def rows(array):
 
 points, cells, data, own = read()
 # Nodes of a cell: corners, the middles of the sides from corner to corner, the centre of a quadrilateral.
-shapes = {"triangle": (3,), "triangle6": (6,), "VTK_LAGRANGE_TRIANGLE": (3, 6),
-          "quad": (4,), "quad8": (8,), "quad9": (9,), "VTK_LAGRANGE_QUADRILATERAL": (4, 9)}
+shapes = {"triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8, "quad9": 9}
 kept, others = [], []
 for block in cells:
     nodes = block.data
-    if nodes.ndim == 2 and nodes.shape[1] in shapes.get(block.type, ()):
+    if nodes.ndim == 2 and nodes.shape[1] == shapes.get(block.type):
         kept.extend(nodes.tolist())
     elif block.type not in ("vertex", "line", "line3"):
         others.append(block.type)

@@ -8,7 +8,7 @@ use crate::command::said;
 /// A scene whose mesh is read by a meshio that does `body`; the folder to name in PYTHONPATH.
 fn with_meshio(body: &str) -> (Place, tempfile::TempDir) {
     let place = Place::with(SQUARE);
-    place.write("mesh.mesh", MESH);
+    place.write("mesh.vtk", MESH);
     let library = tempfile::tempdir().expect("a folder");
     let text = format!("import os, subprocess, sys, time\nhere = {:?}\n{body}", library.path().display().to_string());
     std::fs::write(library.path().join("meshio.py"), text).expect("writable");

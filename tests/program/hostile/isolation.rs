@@ -16,7 +16,7 @@ const PYTHON: &str = "/usr/bin/python3";
 fn trapped() -> Place {
     let place = Place::with(&case("patch"));
     place.write("square.toml", SQUARE);
-    place.write("mesh.mesh", MESH);
+    place.write("mesh.vtk", MESH);
     place.write("field.vtk", FIELD);
     let modules = Command::new(PYTHON).args(["-c", LIST]).output().expect("an interpreter").stdout;
     let sprung = place.temporary.path().with_extension("sprung");
@@ -74,7 +74,7 @@ fn no_module_in_the_current_folder_is_run() {
 #[test]
 fn the_python_path_of_the_user_stays() {
     let place = Place::with(SQUARE);
-    place.write("mesh.mesh", MESH);
+    place.write("mesh.vtk", MESH);
     let library = tempfile::tempdir().expect("a folder");
     std::fs::write(library.path().join("meshio.py"), "raise SystemExit('this is the user\\'s own')\n")
         .expect("writable");

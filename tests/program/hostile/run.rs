@@ -109,14 +109,15 @@ pub fn case(name: &str) -> String {
     std::fs::read_to_string(command::case(name)).expect("a case")
 }
 
-/// A square that is pressed, on the two triangles of `mesh.mesh`.
-pub const SQUARE: &str = "model.kinematics = \"plane-strain\"\nmesh.file = \"mesh.mesh\"\n\
+/// A square that is pressed, on the two triangles of `mesh.vtk`.
+pub const SQUARE: &str = "model.kinematics = \"plane-strain\"\nmesh.file = \"mesh.vtk\"\n\
     bodies.1 = { young = 1.0, poisson = 0.3 }\nsupports = [{ on = \"11\", type = \"clamped\" }]\n\
     tractions = [{ on = \"12\", pressure = 1.0 }]\n";
 
-/// Medit's format, which meshio reads.
-pub const MESH: &str = "MeshVersionFormatted 2\nDimension 2\nVertices\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n\
-    Edges\n2\n1 2 11\n3 4 12\nTriangles\n2\n1 2 3 1\n1 3 4 1\nEnd\n";
+/// VTK's format, which meshio reads.
+pub const MESH: &str = "# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\
+    0 0 0\n1 0 0\n1 1 0\n0 1 0\nCELLS 4 14\n2 0 1\n2 2 3\n3 0 1 2\n3 0 2 3\nCELL_TYPES 4\n3\n3\n5\n5\n\
+    CELL_DATA 4\nSCALARS CellEntityIds int 1\nLOOKUP_TABLE default\n11\n12\n1\n1\n";
 
 /// A displacement on the same triangles.
 pub const FIELD: &str = "# vtk DataFile Version 3.0\nfield\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n\

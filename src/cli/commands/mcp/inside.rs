@@ -51,20 +51,24 @@ fn inside(file: &Path, formats: &[&str]) -> Result<(), CliError> {
     }
     match fs::read(&whole) {
         Ok(bytes) if includes(&bytes) => refused(
-            "it has the keyword *INCLUDE, and a file may not lead to others here",
+            "it has the keyword INCLUDE, and a file may not lead to others here",
             "write one deck without it".into(),
         ),
         _ => Ok(()),
     }
 }
 
-/// True if the text may lead to other files: a deck of Abaqus has a keyword for that.
+/// True if the text may lead to other files: decks of Abaqus and of Nastran have a keyword for that, at the start of a line, whatever their
+/// readers take for the end of the one before.
 fn includes(text: &[u8]) -> bool {
-    const WORD: &[u8] = b"INCLUDE";
-    let text = String::from_utf8_lossy(text);
-    let is_word =
-        |rest: &str| rest.trim_start().as_bytes().get(..WORD.len()).is_some_and(|w| w.eq_ignore_ascii_case(WORD));
-    text.match_indices('*').any(|(at, _)| is_word(&text[at + 1..]))
+    const WORD: &str = "INCLUDE";
+    let text = String::from_utf8_lossy(text).to_ascii_uppercase();
+    let ends_line =
+        |c: char| c.is_control() && c != '\t' || matches!(c, '\u{2028}' | '\u{2029}' | char::REPLACEMENT_CHARACTER);
+    text.match_indices(WORD).any(|(at, _)| {
+        let before = text[..at].trim_end_matches(|c: char| c.is_whitespace() && !ends_line(c));
+        before.chars().next_back().is_none_or(|c| c == '*' || ends_line(c))
+    })
 }
 
 #[cfg(test)]
@@ -73,12 +77,18 @@ mod tests {
 
     #[test]
     fn every_spelling_of_include_is_seen() {
-        for deck in
-            ["*INCLUDE, INPUT=/etc/passwd", "*NODE\n1, 0, 0\n  *include,input=a", "** \n* \tInclude", "*\u{a0}INCLUDE"]
-        {
+        for deck in [
+            "*INCLUDE, INPUT=/etc/passwd",
+            "*NODE\n1, 0, 0\n  *include,input=a",
+            "** \n* \tInclude",
+            "*\u{a0}INCLUDE",
+            "include",
+            "GRID\r\n\t Include 'a'",
+        ] {
             assert!(includes(deck.as_bytes()), "{deck}");
         }
-        for deck in ["*NODE\n1, 0, 0", "* INCL UDE", "include", "*", ""] {
+        assert!(includes(b"GRID\x85INCLUDE 'a'"), "a line ends there in Latin-1");
+        for deck in ["*NODE\n1, 0, 0", "* INCL UDE", "$ bolts, which include nuts", "*", ""] {
             assert!(!includes(deck.as_bytes()), "{deck}");
         }
     }

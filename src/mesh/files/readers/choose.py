@@ -13,13 +13,15 @@ def own_reader(source):
         if low.endswith(suffix):
             return reader
     with open(source, "rb") as file:
-        head = file.read(4000).decode("latin-1")
+        head = file.read(4000)
+    if head.startswith(MARKS[1:]) and b"<" not in head[:4]:
+        refuse("its text is encoded in UTF-16: save it in UTF-8 or ASCII")
+    head = (head[3:] if head.startswith(MARKS[0]) else head).decode("latin-1")
     if re.search(r"^\s*BEGIN POINTS LIST", head, re.MULTILINE):
         return read_getfem
     lines = [line.strip() for line in head.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     first = lines[0] if lines else ""
-    # First order is meshio's.
-    if first.startswith("MeshVersionFormatted") and has_second_order(source):
+    if first.lower().startswith("meshversionformatted"):
         return read_medit
     if re.fullmatch(r"\d+\s+\d+\s+\d+", first):
         return read_freefem
@@ -28,12 +30,6 @@ def own_reader(source):
     if first == "mesh3d":
         return read_ngsolve
     return None
-
-
-def has_second_order(source):
-    """Whether a text of Medit has sides with a node in the middle."""
-    with open(source, "rb") as file:
-        return re.search(rb"^\s*(Edges|Triangles|Quadrilaterals)[PQ]2", file.read(), re.MULTILINE) is not None
 
 
 def read_own(source, reader):
@@ -46,5 +42,10 @@ def read_own(source, reader):
         reason = str(error)
     except (ValueError, KeyError, IndexError, TypeError, AttributeError, struct.error, EOFError, OSError) as error:
         reason = f"it does not follow its format ({type(error).__name__}: {error})"
+    refuse(reason)
+
+
+def refuse(reason):
+    """Ends with code 46 and the reason why a file is not read."""
     print(reason.replace("\n", " "), file=sys.stderr)
     sys.exit(46)

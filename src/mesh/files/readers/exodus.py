@@ -127,10 +127,13 @@ class Hdf:
         return self.file[name].shape[-1]
 
 
-def numbered(file, pattern):
+def numbered(file, kind, pattern):
+    """Numbers and variables of the blocks or sets of a kind; an empty one has a number and no variable."""
+    total = max((len(file.values(name)) for name in (f"{kind}_status", f"{kind}_prop1") if name in file), default=0)
     number = 1
-    while pattern.format(number) in file:
-        yield number, pattern.format(number)
+    while number <= total or pattern.format(number) in file:
+        if pattern.format(number) in file:
+            yield number, pattern.format(number)
         number += 1
 
 
@@ -147,6 +150,7 @@ def read_exodus(source):
         rows = list(zip(*(flat[i:i + count] for i in range(0, len(flat), count))))
     else:
         raise Unreadable("it has no coordinates ('coordx' or 'coord')")
+    dimension = len(rows[0]) if rows else 0
     for tag, row in enumerate(rows, 1):
         found.point(tag, row)
 
@@ -156,7 +160,9 @@ def read_exodus(source):
         return (names[total - 1] if total <= len(names) else "") or f"{label}{identity}", identity
 
     tag = 1
-    for number, name in numbered(file, "connect{}"):
+    # Cells that have two faces before their sides: shells, and triangles in space.
+    shells = set()
+    for number, name in numbered(file, "eb", "connect{}"):
         width, flat = file.width(name), [int(n) for n in file.values(name)]
         kind = file.attribute(name, "elem_type").upper()
         shape = EXODUS.get(kind[:3], kind or "unknown")
@@ -165,17 +171,22 @@ def read_exodus(source):
         title, identity = named("eb", number, "")
         if shape in SIDES:
             found.numbers[2, identity] = title
+        if "SHELL" in kind or (shape == "triangle" and dimension == 3):
+            shells.update(range(tag, tag + len(flat) // width))
         for i in range(0, len(flat), width):
             found.cell(shape, flat[i:i + width], [title] if shape in SIDES or shape == "line" else [], tag)
             tag += 1
-    for number, name in numbered(file, "elem_ss{}"):
+    solid = any(shape in ("hexahedron", "tetrahedron") for shape, _, _ in found.cells)
+    for number, name in numbered(file, "ss", "elem_ss{}"):
         title, identity = named("ss", number, "side_")
         found.numbers[1, identity] = title
-        shells = any(shape in ("hexahedron", "tetrahedron") for shape, _, _ in found.cells)
         for cell, side in zip(file.values(name), file.values(f"side_ss{number}")):
-            if not shells:
-                found.side(int(cell), int(side) - 1, title)
-    for number, name in numbered(file, "node_ns{}"):
+            first = 3 if int(cell) in shells else 1
+            if int(side) < first:
+                found.group(int(cell), title)
+            elif not solid:
+                found.side(int(cell), int(side) - first, title)
+    for number, name in numbered(file, "ns", "node_ns{}"):
         found.node_sets[named("ns", number, "nodes_")[0]] = [int(n) for n in file.values(name)]
     read_exodus_variables(file, found)
     return found

@@ -9,6 +9,9 @@ import tempfile
 PLANE = {("line", 2), ("line", 3), ("triangle", 3), ("triangle", 6), ("quadrilateral", 4), ("quadrilateral", 8), ("quadrilateral", 9)}
 SIDES = {"triangle": [(0, 1), (1, 2), (2, 0)], "quadrilateral": [(0, 1), (1, 2), (2, 3), (3, 0)]}
 
+# Byte order marks of UTF-8 and of UTF-16.
+MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
+
 
 class Unreadable(Exception):
     """A file that does not follow its format."""
@@ -85,11 +88,19 @@ class Found:
         return {"points": self.points, "blocks": self.blocks(), "node_sets": sets, "numbers": numbers}
 
 
-def lines_of(source):
-    """The lines of a text file, which may be compressed."""
+def content_of(source):
+    """The bytes of a file, which may be compressed, without the byte order mark of UTF-8."""
     opened = gzip.open if source.lower().endswith(".gz") else open
     with opened(source, "rb") as file:
-        return file.read().decode("latin-1").splitlines()
+        data = file.read()
+    if data.startswith(MARKS[1:]):
+        raise Unreadable("its text is encoded in UTF-16: save it in UTF-8 or ASCII")
+    return data[3:] if data.startswith(MARKS[0]) else data
+
+
+def lines_of(source):
+    """The lines of a text file, which may be compressed."""
+    return content_of(source).decode("latin-1").splitlines()
 
 
 def package(name):

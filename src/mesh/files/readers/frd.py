@@ -109,7 +109,7 @@ def frd_reals(line, start, count):
 
 def frd_flat(frd):
     """The cells of one layer between equal faces as those of a face; nothing where they are none."""
-    flat = []
+    flat, middle = [], {}
     size = max((abs(x) for row in frd.nodes.values() for x in row), default=0.0)
     moved = max((abs(x) for row in frd.values.values() for x in row[:2]), default=0.0)
     heights = [set(), set()]
@@ -127,18 +127,37 @@ def frd_flat(frd):
             u, v = frd.values.get(low), frd.values.get(high)
             if u and v and max(abs(u[0] - v[0]), abs(u[1] - v[1])) > SAME_DISPLACEMENT * moved:
                 raise Unreadable(f"nodes {low} and {high} lie on the two faces of one layer of cells and move differently, which is no plane state")
+            if u and v:
+                # In plane stress the faces move apart; between them nothing moves out of the plane.
+                across = 0.5 * (u[2] + v[2])
+                middle[low] = [u[0], u[1], across if abs(across) > SAME_DISPLACEMENT * moved else 0.0]
         flat.append((tag, shape, sides[0]))
     spread = max((max(at) - min(at) for at in heights), default=0.0)
-    return flat if flat and spread <= SAME_PLACE * size else None
+    if not flat or spread > SAME_PLACE * size:
+        return None
+    frd.values.update(middle)
+    return flat
+
+
+def frd_is_turned(frd):
+    """Whether the cells are a wedge about the axis y, which is what is made of axisymmetric elements."""
+    if not frd.cells or not all(kind in FACES and all(node in frd.nodes for node in nodes) for _, kind, nodes in frd.cells):
+        return False
+    faces = [([frd.nodes[nodes[i]] for i in low], [frd.nodes[nodes[i]] for i in high]) for _, kind, nodes in frd.cells for _, low, high in [FACES[kind]]]
+    radius, height = max((max((p[0], abs(p[2])) for p in low) for low, _ in faces))
+    same = lambda a, b: abs(a - b) <= SAME_PLACE * max(radius, 1e-300)
+    return height > 0 and all(same(p[0], q[0]) and same(p[2], -q[2]) and same(abs(p[2]) * radius, p[0] * height)
+                              for low, high in faces for p, q in zip(low, high))
 
 
 def read_frd(source):
-    with open(source, "rb") as file:
-        frd = Frd(file.read()).read()
+    frd = Frd(content_of(source)).read()
     if not frd.nodes:
         raise Unreadable("it has no block of nodes (2C), which CalculiX writes where the deck asks for `*NODE FILE` and U")
     found = Found("CalculiX")
     flat = frd_flat(frd)
+    if flat is None and frd_is_turned(frd):
+        raise Unreadable("its cells are the wedge in space that CalculiX makes of axisymmetric elements: write it with `*NODE FILE, OUTPUT=2D`")
     cells = flat or [(tag, FRD[kind][0], nodes) for tag, kind, nodes in frd.cells]
     kept = {node for _, _, nodes in flat for node in nodes} if flat else frd.nodes
     for tag, row in frd.nodes.items():

@@ -38,6 +38,8 @@ def read_med(source):
     mesh = whole if "NOE" in whole else med_step(whole)
     if "NOE" not in mesh:
         raise Unreadable("its mesh has no nodes")
+    if "COO" not in mesh["NOE"]:
+        raise Unreadable("its mesh is a structured grid: save it with triangles or quadrilaterals")
     found = Found("MED")
     coordinates = mesh["NOE"]["COO"]
     count = int(coordinates.attrs["NBR"])
@@ -53,6 +55,8 @@ def read_med(source):
     for kind, cells in (mesh["MAI"].items() if "MAI" in mesh else []):
         if kind.startswith("PO1"):
             continue
+        if kind.startswith("PO"):
+            raise Unreadable(f"it has polygons or polyhedra ('{kind}'): save it with triangles or quadrilaterals")
         shape, corners = MED_CELLS.get(kind[:3], (f"cell {kind} of MED", 0))
         count = int(cells["NOD"].attrs["NBR"])
         flat = cells["NOD"][()].tolist()
@@ -63,19 +67,31 @@ def read_med(source):
     for name, field in file.get("CHA", {}).items():
         step = med_step(field)
         if "NOE" in step:
-            med_field(found, name, field, step["NOE"])
+            med_field(found, name, field, step["NOE"], file.get("PROFILS", {}))
     return found
 
 
-def med_field(found, name, field, support):
-    """The values of a field at all nodes."""
+def med_field(found, name, field, support, profiles):
+    """The values of a field at all nodes that a cell uses."""
+    names = field.attrs.get("NOM", b"")
+    names = (names.decode("latin-1") if isinstance(names, bytes) else str(names)).split()
     components = int(field.attrs.get("NCO", 1))
-    profile = support[sorted(support)[0]] if not isinstance(support, dict) and len(support) else None
-    if profile is None or "CO" not in profile:
+    profile = next((support[key] for key in sorted(support) if "CO" in support[key]), None) if len(support) else None
+    if profile is None:
         return
     flat = profile["CO"][()].tolist()
     count = len(flat) // max(components, 1)
-    if count != len(found.points):
+    rows = [flat[i::count] for i in range(count)]
+    # Code_Aster has others beside them, such as LAGS_C of contact and the rotations of shells.
+    moves = [names.index(wanted) for wanted in ("DX", "DY", "DZ") if wanted in names]
+    if len(moves) >= 2 and len(names) == components:
+        rows = [[row[c] for c in moves] for row in rows]
+    # A profile lists the nodes that have values, from one.
+    key = profile.name.rsplit("/", 1)[1]
+    tags = profiles[key]["PFL"][()].tolist() if key in profiles else range(1, count + 1)
+    known = dict(zip(tags, rows))
+    used = {tag for _, nodes, _ in found.cells for tag in nodes}
+    if not used <= known.keys():
         return
     # DEPL and the like: Code_Aster's names have the result in front.
-    found.fields[name.strip("_")] = [flat[i::count] for i in range(count)]
+    found.fields[name.strip("_")] = [known.get(tag, [0.0] * len(rows[0])) for tag in found.index]

@@ -38,32 +38,35 @@ MEDIT = {"edges": (1, "line", 2), "edgesp2": (1, "line", 3), "triangles": (2, "t
 
 
 def read_medit(source):
-    """Medit's text, of second order too. Gmsh writes eight and nine nodes under `Quadrilaterals`, as many as there are numbers."""
+    """Medit's text, of second order too; keywords without cells, such as normals and ridges, are passed over. Gmsh writes eight and nine nodes
+    under `Quadrilaterals`, as many as there are numbers."""
     found = Found("Medit")
     text = re.sub(r"#.*", "", "\n".join(lines_of(source)))
-    # A keyword, then its numbers.
-    parts = re.findall(r"([A-Za-z_][A-Za-z0-9_]*)([^A-Za-z_]*(?:[0-9.][eEdD][-+0-9][^A-Za-z_]*)*)", text)
+    words = text.split()
+    starts = [i for i, word in enumerate(words) if word[0].isalpha()]
     dimension = 3
-    for keyword, numbers in parts:
-        words = numbers.split()
-        keyword = keyword.lower()
+    for start, end in zip(starts, starts[1:] + [len(words)]):
+        keyword, numbers = words[start].lower(), words[start + 1:end]
         if keyword == "dimension":
-            dimension = int(words[0])
+            dimension = int(numbers[0])
         elif keyword == "vertices":
             width = dimension + 1
-            if len(words) != 1 + int(words[0]) * width:
-                raise Unreadable(f"it announces {words[0]} vertices of {dimension} coordinates and has others")
-            for tag in range(int(words[0])):
-                found.point(tag + 1, [real(x) for x in words[1 + tag * width:1 + tag * width + dimension]])
+            if len(numbers) != 1 + int(numbers[0]) * width:
+                wanted = f"{numbers[0]} vertices, each with {dimension} coordinates and a reference"
+                raise Unreadable(f"it announces {wanted}, and has {len(numbers) - 1} numbers instead of {int(numbers[0]) * width}")
+            for tag in range(int(numbers[0])):
+                found.point(tag + 1, [real(x) for x in numbers[1 + tag * width:1 + tag * width + dimension]])
         elif keyword in MEDIT:
             way, shape, corners = MEDIT[keyword]
-            count = int(words[0])
-            width, rest = divmod(len(words) - 1, max(count, 1))
+            count = int(numbers[0])
+            width, rest = divmod(len(numbers) - 1, max(count, 1))
             if rest or count and width <= corners:
                 raise Unreadable(f"it announces {count} of {keyword} and has others")
             for cell in range(count):
-                *nodes, label = [int(word) for word in words[1 + cell * width:1 + (cell + 1) * width]]
+                *nodes, label = [int(word) for word in numbers[1 + cell * width:1 + (cell + 1) * width]]
                 found.cell(shape, nodes, [found.number(way, label, {})] if label else [])
+        elif re.fullmatch(r"(edges|triangles|quadrilaterals)[pq]\d", keyword):
+            raise Unreadable(f"it has cells of the kind '{keyword}': save it in first or second order")
     return found
 
 
@@ -140,6 +143,11 @@ def read_gid(source):
     return found
 
 
+# Sections of Netgen that hold cells; each version has more columns.
+NGSOLVE_SURFACES = ["surfaceelements", "surfaceelementsgi", "surfaceelementsuv"]
+NGSOLVE_EDGES = ["edgesegments", "edgesegmentsgi", "edgesegmentsgi2", "edgesegmentsgi3"]
+
+
 def read_ngsolve(source):
     found = Found("NGSolve")
     lines = [line.strip() for line in lines_of(source)]
@@ -149,8 +157,9 @@ def read_ngsolve(source):
     while at < len(lines):
         key = lines[at].lower()
         at += 1
-        if key in ("surfaceelements", "surfaceelementsgi", "surfaceelementsuv", "edgesegments", "edgesegmentsgi", "edgesegmentsgi2", "volumeelements",
-                   "points", "materials", "bcnames", "pointelements"):
+        if re.match("(surfaceelements|edgesegments|volumeelements)", key) and key not in (*NGSOLVE_SURFACES, *NGSOLVE_EDGES, "volumeelements"):
+            raise Unreadable(f"it has a section '{lines[at - 1]}', which this program does not know: export the mesh in another format, such as Gmsh's")
+        if key in (*NGSOLVE_SURFACES, *NGSOLVE_EDGES, "volumeelements", "points", "materials", "bcnames", "pointelements", "edgedescriptors"):
             count = int(lines[at])
             tables[key] = [line.split() for line in lines[at + 1:at + 1 + count]]
             if len(tables[key]) != count:
@@ -164,22 +173,28 @@ def read_ngsolve(source):
         found.cell(solids.get(int(row[1]), "solid"), [int(n) for n in row[2:2 + int(row[1])]])
     # The middle of a side is numbered by the corner that it is opposite to.
     orders = {3: [0, 1, 2], 6: [0, 1, 2, 5, 3, 4], 4: [0, 1, 2, 3], 8: [0, 1, 2, 3, 4, 7, 5, 6]}
-    for key in ("surfaceelements", "surfaceelementsgi", "surfaceelementsuv"):
+    for key in NGSOLVE_SURFACES:
         for row in tables.get(key, []):
             count = int(row[4])
             nodes = [int(n) for n in row[5:5 + count]]
             shape = "triangle" if count in (3, 6) else "quadrilateral"
             found.cell(shape, [nodes[i] for i in orders.get(count, range(count))], [found.number(2, int(row[1]), names["materials"])])
-    for key in ("edgesegments", "edgesegmentsgi", "edgesegmentsgi2"):
+    for key in NGSOLVE_EDGES[:3]:
         for row in tables.get(key, []):
             found.cell("line", [int(n) for n in row[2:4]], [found.number(1, int(row[0]), names["bcnames"])])
+    # Here a segment begins with its points and ends with its descriptor, counted from zero, which begins with a number and ends with a name.
+    descriptors = [(int(row[0]), " ".join(row[8:])) for row in tables.get("edgedescriptors", [])]
+    for row in tables.get(NGSOLVE_EDGES[3], []):
+        if not 0 <= int(row[6]) < len(descriptors):
+            raise Unreadable(f"a segment of {NGSOLVE_EDGES[3]} has descriptor {row[6]}, and there are {len(descriptors)} in edgedescriptors")
+        number, name = descriptors[int(row[6])]
+        found.cell("line", [int(n) for n in row[:2]], [found.number(1, number, {number: name or names["bcnames"].get(number)})])
     return found
 
 
 def read_skfem(source):
     found = Found("scikit-fem")
-    with open(source, encoding="utf-8") as file:
-        content = json.load(file)
+    content = json.loads(content_of(source).decode("utf-8"))
     if not isinstance(content, dict) or "p" not in content or "t" not in content:
         raise Unreadable("it has no 'p' and 't', which scikit-fem writes")
     points, cells = content["p"], content["t"]

@@ -92,7 +92,8 @@ def unv_cells(found, rows):
 
 
 def unv_groups(found, number, rows):
-    width = 2 if number in ("2429", "2430", "2432") else 4
+    # A member is its kind and number; newer datasets put two more integers behind them.
+    width = 4 if number in ("2435", "2452", "2467", "2477") else 2
     at = 0
     while at + 1 < len(rows):
         head, name = unv_ints(rows[at]), rows[at + 1].strip()
