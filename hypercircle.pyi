@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
-_Kinematics = Literal["plane-strain", "plane-stress"]
+_PlaneState = Literal["plane-strain", "plane-stress"]
+_Kinematics = Literal["plane-strain", "plane-stress", "axisymmetric"]
 _Method = Literal["condensed", "active-set", "clarabel", "uzawa"]
 
 class InputError(ValueError):
@@ -31,7 +32,7 @@ class _Affine(TypedDict, total=False):
     gradient: Sequence[_Point]
 
 class _Model(TypedDict, total=False):
-    kinematics: Literal["plane-strain", "plane-stress", "axisymmetric"]
+    kinematics: _Kinematics
     thickness: float
 
 class _MeshPart(TypedDict, total=False):
@@ -231,6 +232,19 @@ class Scene:
         threads: int = 1,
         out: str | PathLike[str] | None = None,
     ) -> Certificate: ...
+    def chart(
+        self,
+        *,
+        out: str | PathLike[str],
+        methods: Sequence[str] = ...,
+        primal_degree: Sequence[int] = ...,
+        refine: int = 3,
+        repeats: int = 3,
+        budget: float | None = None,
+        resume: bool = False,
+        max_memory: str | None = None,
+        threads: int = 1,
+    ) -> dict[str, Any]: ...
     def diagnose(
         self, points: ArrayLike, triangles: ArrayLike, displacement: ArrayLike
     ) -> dict[str, Any] | None: ...
@@ -290,6 +304,7 @@ class Solution:
     @property
     def maps(self) -> dict[str, NDArray[np.float64]]: ...
     def table(self, name: str) -> dict[str, list[Any]]: ...
+    def to_pyvista(self) -> Any: ...
     def plot(
         self,
         value: str | ArrayLike | None = None,
@@ -413,7 +428,7 @@ def element(
     corners: ArrayLike,
     young: float,
     poisson: float,
-    kinematics: _Kinematics,
+    kinematics: _PlaneState,
     body_force: Sequence[float] = ...,
 ) -> dict[str, Any]: ...
 def flexibility(corners: ArrayLike, constants: Sequence[float]) -> list[list[float]]: ...

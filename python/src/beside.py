@@ -138,13 +138,35 @@ def page(report):
     return "".join(text) + "</div>"
 
 
+def components(solution):
+    """The mean stress of each triangle, by component."""
+    means = solution.mean_stress
+    return dict(zip(("xx", "yy", "xy") if means.shape[1] == 3 else ("rr", "zz", "rz", "tt"), means.T))
+
+
+def grid(solution):
+    """The triangles with what is known of them, for PyVista."""
+    try:
+        import pyvista
+    except ImportError as error:
+        raise ImportError("to_pyvista needs PyVista; pip install pyvista") from error
+    solid = lambda plane: np.column_stack([plane, np.zeros(len(plane))])
+    made = pyvista.UnstructuredGrid({pyvista.CellType.TRIANGLE: np.array(solution.triangles)}, solid(solution.points))
+    made.cell_data["body"] = np.array(solution.body)
+    for name, numbers in [*((f"stress_{name}", numbers) for name, numbers in components(solution).items()), *solution.maps.items()]:
+        made.cell_data[name] = np.array(numbers)
+    if solution.displacement is not None:
+        made.point_data["displacement"] = solid(solution.displacement)
+    return made
+
+
 def plot(solution, value, ax, deformed, colorbar, options):
     """Draws one number a triangle."""
     if isinstance(value, str):
-        known = {name: i for i, name in enumerate(("xx", "yy", "xy"))}
+        known = components(solution)
         maps = solution.maps
         if value in known:
-            numbers, label = solution.mean_stress[:, known[value]], f"stress {value}"
+            numbers, label = known[value], f"stress {value}"
         elif value in maps:
             numbers, label = maps[value], value.replace("_", " ")
         else:
@@ -184,10 +206,20 @@ def job(scenes, command, out, jobs, options):
     """Exit code, what was said, and the content of job.json, `None` where the command was refused."""
     if isinstance(scenes, (str, os.PathLike)):
         scenes = [scenes]
-    out = pathlib.Path(out)
-    kept = out / "job.json"
+    return _run([command, "--jobs", str(jobs), "--shard", "1/1", *options], scenes, out, "job.json")
+
+
+def chart(scene, out, options):
+    """Exit code, what was said, and the content of chart.json, `None` where no chart was made."""
+    code, said, made = _run(["chart", *options], [scene], out, "chart.json")
+    return code, said, made if code == 0 else None
+
+
+def _run(words, scenes, out, kept):
+    """Runs a command on scenes, and reads what it leaves in its folder."""
+    kept = pathlib.Path(out) / kept
     before = kept.stat().st_mtime_ns if kept.is_file() else None
-    words = [program(), command, "--out", out, "--jobs", str(jobs), "--shard", "1/1", "--quiet", *options, "--", *scenes]
+    words = [program(), *words, "--out", out, "--quiet", "--", *scenes]
     done = subprocess.run([os.fspath(word) for word in words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
     made = kept.is_file() and kept.stat().st_mtime_ns != before
     return done.returncode, done.stderr.strip(), json.loads(kept.read_text(encoding="utf-8")) if made else None

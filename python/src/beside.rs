@@ -1,6 +1,7 @@
 //! Parts of the module that are written in Python: tables, notebooks, pictures, fields of other programs, jobs.
 
 use std::ffi::CString;
+use std::path::Path;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -8,6 +9,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyModule};
 
 use crate::errors::{fault, raised};
+use crate::line::Line;
 use hypercircle::cli::Exit;
 
 static BESIDE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
@@ -50,6 +52,31 @@ pub fn table<'py>(report: &Bound<'py, PyAny>, name: &str) -> PyResult<Bound<'py,
 /// Of the interpreter alone.
 pub fn page<'py>(report: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     beside(report.py())?.call_method1("page", (report,))
+}
+
+/// `solution` as a grid of PyVista.
+///
+/// # Errors
+/// `ImportError` without PyVista.
+pub fn grid<'py>(solution: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    beside(solution.py())?.call_method1("grid", (solution,))
+}
+
+/// The chart of a scene in a file, in the folder `out`: what `chart.json` holds.
+///
+/// # Errors
+/// What the command line refuses.
+pub fn chart<'py>(py: Python<'py>, scene: &Path, out: &Path, options: Line) -> PyResult<Bound<'py, PyAny>> {
+    kept(beside(py)?.call_method1("chart", (scene, out, options.words()))?)
+}
+
+/// What a command left in its folder, or why it was refused.
+fn kept(found: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyAny>> {
+    let (exit, said, kept): (i32, String, Bound<'_, PyAny>) = found.extract()?;
+    match kept.is_none() {
+        false => Ok(kept),
+        true => Err(raised(Exit::of(u8::try_from(exit).unwrap_or(3)), said, "")),
+    }
 }
 
 /// A picture of `solution`.
@@ -103,10 +130,5 @@ pub fn job<'py>(
     if !["verify", "solve", "certify"].contains(&command) {
         return Err(fault(format!("command '{command}': use one of verify, solve, certify")));
     }
-    let found = beside(py)?.call_method1("job", (scenes, command, out, jobs, options))?;
-    let (exit, said, kept): (i32, String, Bound<'py, PyAny>) = found.extract()?;
-    match kept.is_none() {
-        false => Ok(kept),
-        true => Err(raised(Exit::of(u8::try_from(exit).unwrap_or(3)), said, "")),
-    }
+    kept(beside(py)?.call_method1("job", (scenes, command, out, jobs, options))?)
 }

@@ -53,6 +53,11 @@ impl Line {
         Ok(self)
     }
 
+    /// The words themselves.
+    pub fn words(self) -> Vec<OsString> {
+        self.words
+    }
+
     /// The options of a command, said quietly, of a scene that is there already.
     ///
     /// # Errors

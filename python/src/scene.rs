@@ -77,7 +77,7 @@ impl Scene {
         &self.of.path
     }
 
-    /// `plane-strain` or `plane-stress`.
+    /// `plane-strain`, `plane-stress` or `axisymmetric`.
     #[getter]
     fn kinematics(&self) -> &'static str {
         self.of.kinematics.name()
@@ -159,6 +159,11 @@ impl Scene {
         let Some(object) = element else { return self.solve_as(py, args) };
         if args.solve.degree.is_some() || args.solve.elements.is_some() || args.solve.is_adaptive() {
             return Err(fault("an element has a degree, and a tolerance makes other meshes; give element, or these"));
+        }
+        if self.of.kinematics == scene::Kinematics::Axisymmetric {
+            return Err(fault(
+                "an element has the stresses of the plane, and the scene is a body of revolution; leave element out",
+            ));
         }
         let own = spanned(object)?;
         let refine = args.solve.refine as usize;
@@ -263,6 +268,48 @@ impl Scene {
         verify(py, &self.of, line)
     }
 
+    /// Measures accuracy against time, method by method and refinement by refinement, as `hypercircle chart` does, each run in a process
+    /// of its own: `methods` are names of its table, the usual ones where they are missing, `primal_degree` degrees of FEniCSx, `budget`
+    /// the seconds that a run may take. The scene has to be in a file. Returns what `chart.json` holds, a dictionary, and leaves it and the
+    /// page `chart.html` in the folder `out`; `resume` keeps the runs that are there.
+    ///
+    /// Raises `InputError`, `SolveError`. Ctrl-C ends the processes.
+    #[pyo3(signature = (*, out, methods = Vec::new(), primal_degree = Vec::new(), refine = 3, repeats = 3, budget = None, resume = false,
+        max_memory = None, threads = 1))]
+    #[allow(clippy::too_many_arguments)]
+    fn chart<'py>(
+        &self,
+        py: Python<'py>,
+        out: PathBuf,
+        methods: Vec<String>,
+        primal_degree: Vec<i64>,
+        refine: i64,
+        repeats: i64,
+        budget: Option<f64>,
+        resume: bool,
+        max_memory: Option<&str>,
+        threads: i64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let path = &self.of.path;
+        if !path.is_file() {
+            return Err(fault(format!(
+                "a chart runs the command on the file of the scene, and {} is none; write it",
+                path.display()
+            )));
+        }
+        let degrees: Vec<String> = primal_degree.iter().map(i64::to_string).collect();
+        let line = Line::default()
+            .value("primal-degree", (!degrees.is_empty()).then(|| degrees.join(",")))
+            .value("refine", Some(refine))
+            .value("repeats", Some(repeats))
+            .value("budget", budget)
+            .flag("resume", resume)
+            .value("max-memory", max_memory)
+            .value("threads", Some(threads));
+        let line = methods.iter().fold(line, |line, method| line.value("method", Some(method)));
+        beside::chart(py, path, &out, line)
+    }
+
     /// Which mistake explains that a displacement is not the discrete solution of its mesh: a dictionary with `sentence`,
     /// `findings`, `explained` (part of the squared residual) and `tried`; `None` where it is one. The same as
     /// `certify(points, triangles, displacement, solution=True).diagnosis`.
@@ -286,19 +333,10 @@ impl Scene {
     }
 }
 
-/// Bodies of revolution are solved from the command line, whose reports know weighted stresses.
-fn plane_only(scene: &hypercircle::scene::Scene) -> PyResult<()> {
-    if scene.kinematics == hypercircle::scene::Kinematics::Axisymmetric {
-        return Err(fault("bodies of revolution are not solved from Python; use the command `hypercircle solve`"));
-    }
-    Ok(())
-}
-
 impl Scene {
     fn solve_as(&self, py: Python<'_>, args: Args) -> PyResult<Solution> {
         let count = threads(args.solve.threads);
         let scene = Arc::clone(&self.of);
-        plane_only(&scene)?;
         let solved = aside(py, count, || {
             let folder = args.run.out.is_some().then(|| args.run.report_folder(&scene)).transpose()?;
             let session = Session::new("solve", (*scene).clone(), count, &args.solve, true)?;

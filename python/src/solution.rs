@@ -20,7 +20,7 @@ use hypercircle::cli::{CliError, Exit};
 use hypercircle::element::{SideValues, lattice};
 use hypercircle::problem::Problem;
 use hypercircle::report::{self, Dossier};
-use hypercircle::study::summaries;
+use hypercircle::study::{Certified, summaries};
 
 /// The stress side of a scene: a stress in equilibrium, the interval that holds the exact energy, and the intervals of the
 /// quantities. Arrays show its numbers in place: they are read-only.
@@ -154,10 +154,22 @@ impl Solution {
         arrays::signed(arrays::numbers(this, |solution| &solution.solved.run.certified.problem.mesh.body)?.as_any())
     }
 
-    /// Stresses (xx, yy, xy) at the nodes of all triangles, k × 3; `stress_start` says which belong to which.
+    /// Stresses (xx, yy, xy) at the nodes of all triangles, k × 3; `stress_start` says which belong to which. Of a body of revolution
+    /// (rr, zz, rz, tt), k × 4; on the axis those close by.
     #[getter]
     fn stress<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        arrays::rows(this, |solution| solution.solved.run.certified.dual.stress.values())
+        let Certified { problem, dual, .. } = &this.get().solved.run.certified;
+        let Some(revolved) = problem.section().revolved() else {
+            return arrays::rows(this, |solution| solution.solved.run.certified.dual.stress.values());
+        };
+        let own = &dual.stress;
+        let of_triangle = |t: usize| {
+            let (corners, force) = (problem.mesh.corners(t), problem.body_force(t));
+            (0..3).flat_map(move |sub| {
+                lattice(own.degree(t)).map(move |l| in_plane_first(revolved.stress_at(own, t, sub, corners, force, l)))
+            })
+        };
+        Ok(arrays::made(this.py(), (0..own.len()).flat_map(of_triangle).collect())?.into_any())
     }
 
     /// m + 1 numbers: the rows of `stress` from `stress_start[t]` to `stress_start[t + 1]` are those of triangle t. A triangle of
@@ -184,11 +196,19 @@ impl Solution {
         Ok(arrays::made(py, (0..mesh.triangles.len()).flat_map(of_triangle).collect())?.into_any())
     }
 
-    /// Mean stress (xx, yy, xy) of each triangle, m × 3.
+    /// Mean stress (xx, yy, xy) of each triangle, m × 3; of a body of revolution (rr, zz, rz, tt), m × 4, by volume.
     #[getter]
     fn mean_stress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let stress = &self.solved.run.certified.dual.stress;
-        Ok(arrays::made(py, (0..stress.len()).map(|t| stress.mean(t)).collect())?.into_any())
+        let Certified { problem, dual, .. } = &self.solved.run.certified;
+        let stress = &dual.stress;
+        let all = 0..stress.len();
+        Ok(match problem.section().revolved() {
+            None => arrays::made(py, all.map(|t| stress.mean(t)).collect())?.into_any(),
+            Some(revolved) => {
+                let of = |t: usize| revolved.mean(stress, t, problem.mesh.corners(t), problem.body_force(t));
+                arrays::made(py, all.map(|t| in_plane_first(of(t))).collect())?.into_any()
+            }
+        })
     }
 
     /// Polynomial degree of the stress on each triangle, m numbers.
@@ -310,8 +330,16 @@ impl Solution {
         beside::table(&self.report(py)?, name)
     }
 
-    /// Draws a number on each triangle with matplotlib, and returns the axes: `value` is `xx`, `yy` or `xy` of the mean stress, a name in
-    /// `maps`, or an array of m numbers; the von Mises stress where it is missing. `deformed` is the scale of the displacement. More keywords go to `Axes.tripcolor`.
+    /// The mesh as a `pyvista.UnstructuredGrid`: the cell data are `body`, the mean stress by component (`stress_xx`, …) and the numbers in
+    /// `maps`, the point data, where there is an upper bound, its `displacement`.
+    ///
+    /// Raises `ImportError` without PyVista.
+    fn to_pyvista<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        beside::grid(this.as_any())
+    }
+
+    /// Draws a number on each triangle with matplotlib, and returns the axes: `value` is `xx`, `yy` or `xy` of the mean stress (of a body of
+    /// revolution `rr`, `zz`, `rz` or `tt`), a name in `maps`, or an array of m numbers; the von Mises stress where it is missing. `deformed` is the scale of the displacement. More keywords go to `Axes.tripcolor`.
     ///
     /// Raises `ImportError` without matplotlib.
     #[pyo3(signature = (value = None, *, ax = None, deformed = 0.0, colorbar = true, **options))]
@@ -337,4 +365,9 @@ impl Solution {
         let (name, lower, upper) = (&self.session.scene.name, self.lower(), self.upper());
         format!("<Solution of {name}: energy in [{lower:?}, {upper:?}], guaranteed error {percent:.3} %>")
     }
+}
+
+/// (rr, zz, rz, tt) of (rr, zz, tt, rz): the hoop stress behind those of the plane, as in a scene.
+fn in_plane_first([rr, zz, tt, rz]: [f64; 4]) -> [f64; 4] {
+    [rr, zz, rz, tt]
 }

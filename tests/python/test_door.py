@@ -7,6 +7,7 @@ import sys
 import textwrap
 import time
 import tomllib
+import types
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +70,43 @@ def test_verify_compares_with_fenicsx(hypercircle, tmp_path):
         scene.verify(primal_degree=[0])
 
 
+TUBE = """
+model.kinematics = "axisymmetric"
+geometry = { size = 0.25, polygons = [{ body = "tube", points = [[1, 0], [2, 0], [2, 1], [1, 1]], edges = ["foot", "out", "top", "bore"] }] }
+bodies.tube = { young = 1.0, poisson = 0.3 }
+supports = [{ on = "foot", type = "roller" }, { on = "top", type = "roller" }]
+tractions = [{ on = "bore", pressure = 1.0 }]
+"""
+
+
+def test_a_body_of_revolution_has_four_stresses(hypercircle):
+    solution = hypercircle.Scene.from_text(TUBE).solve(degree=3)
+    # Lamé: radial and hoop stress A ± B/r² with A = 1/3, B = 4/3, and along the axis, where nothing moves, ν of their sum.
+    lame = lambda r: np.stack([(1 - 4 / r**2) / 3, np.full_like(r, 0.3 * 2 / 3), np.zeros_like(r), (1 + 4 / r**2) / 3], axis=1)
+    r = solution.stress_points[:, 0]
+    assert solution.stress.shape == (len(r), 4) and np.abs(solution.stress - lame(r)).max() < 0.02
+    centroids = solution.points[solution.triangles].mean(axis=1)[:, 0]
+    assert np.abs(solution.mean_stress - lame(centroids)).max() < 0.1
+    assert len(solution.maps["von_mises_dual"]) == len(solution.triangles)
+    # The energy is −½ ∫ p u_r, and u_r = (1 + ν)((1 − 2ν) A r + B/r).
+    exact = -0.5 * 2 * np.pi * 1.3 * (0.4 / 3 + 4 / 3)
+    assert solution.lower <= exact <= solution.upper and solution.relative_error_bound < 1e-3
+    with pytest.raises(hypercircle.InputError, match="revolution"):
+        hypercircle.Scene.from_text(TUBE).solve(element=object())
+
+
+def test_a_chart_is_what_the_command_leaves(hypercircle, tmp_path):
+    scene = hypercircle.Scene(CASES / "patch.toml")
+    found = scene.chart(out=tmp_path / "out", methods=["condensed"], refine=1, repeats=1)
+    (patch,) = found["scenes"]
+    assert [run["level"] for run in patch["runs"]] == [0, 1] and (tmp_path / "out/chart.html").is_file()
+    assert all(run["plot"]["lower"] <= patch["reference"]["Ok"]["upper"] for run in patch["runs"])
+    with pytest.raises(hypercircle.InputError, match="no method"):
+        scene.chart(out=tmp_path / "out", methods=["fast"])
+    with pytest.raises(hypercircle.InputError, match="write it"):
+        hypercircle.Scene.from_text(TUBE).chart(out=tmp_path)
+
+
 def test_a_job_is_many_scenes(hypercircle, tmp_path):
     (tmp_path / "bad.toml").write_text("nonsense")
     found = hypercircle.job([CASES / "patch.toml", CASES / "gap.toml", tmp_path / "bad.toml"], "solve", out=tmp_path / "out", jobs=2)
@@ -124,6 +162,29 @@ def test_a_picture_shows_one_number_a_triangle(hypercircle):
         solution.plot("zz", ax=Axes())
     with pytest.raises(hypercircle.InputError, match="one number for each"):
         solution.plot([1.0], ax=Axes())
+
+
+def test_a_grid_of_pyvista_has_what_is_known_of_the_triangles(hypercircle, monkeypatch):
+    class Grid:
+        def __init__(self, cells, points):
+            (self.triangles,), self.points = cells.values(), points
+            self.cell_data, self.point_data = {}, {}
+
+    # PyVista asks for a dozen packages: these are the calls that it takes, of 0.49.
+    stand_in = types.SimpleNamespace(UnstructuredGrid=Grid, CellType=types.SimpleNamespace(TRIANGLE=5))
+    monkeypatch.setitem(sys.modules, "pyvista", stand_in)
+    for scene, components in ((CASES / "two_blocks.toml", 3), (CASES / "tube.toml", 4)):
+        solution = hypercircle.Scene(scene).solve()
+        grid = solution.to_pyvista()
+        assert (grid.points[:, :2] == solution.points).all() and not grid.points[:, 2].any()
+        assert (grid.triangles == solution.triangles).all() and (grid.cell_data["body"] == solution.body).all()
+        stresses = [name for name in grid.cell_data if name.startswith("stress_")]
+        assert len(stresses) == components and (grid.cell_data[stresses[1]] == solution.mean_stress[:, 1]).all()
+        assert solution.maps.keys() <= grid.cell_data.keys()
+        assert (grid.point_data["displacement"][:, :2] == solution.displacement).all()
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    with pytest.raises(ImportError, match="pip install pyvista"):
+        solution.to_pyvista()
 
 
 def test_fields_of_scikit_fem_are_taken(hypercircle, tmp_path):
