@@ -7,6 +7,7 @@ mod certify;
 mod chart;
 mod ci;
 mod claimed;
+mod claims_of_another;
 #[path = "../support/command.rs"]
 mod command;
 mod command_line;
@@ -43,7 +44,6 @@ mod quantities;
 mod random;
 mod revolved_fields;
 mod schemas;
-mod small_loads;
 mod spoiled;
 mod stability;
 mod stale;

@@ -38,10 +38,12 @@ impl Rule {
             let triangles = (0..symmetric_rules().len()).map(Some).chain([None]);
             return triangles.map(|triangles| Rule { triangles, points: 0 }).collect();
         };
-        // Beside quadrilaterals triangles are integrated by the rule of their own degree.
+        // Close to the axis more points are told apart than in the plane.
+        let points = || points.iter().copied().chain([first + 3, first + 4]);
+        // Beside quadrilaterals triangles are integrated by the rule of their own degree, or as good as exactly.
         let beside = if first > 2 { [2, 6, 7] } else { [1, 2, 6] };
-        let triangles = if has_triangles(candidate) { beside.map(Some).to_vec() } else { vec![None] };
-        triangles.into_iter().flat_map(|t| points.iter().map(move |n| Rule { triangles: t, points: *n })).collect()
+        let own = beside.map(Some).into_iter().filter(|_| has_triangles(candidate)).chain([None]);
+        own.flat_map(|triangles| points().map(move |points| Rule { triangles, points })).collect()
     }
 }
 
