@@ -1,6 +1,6 @@
 //! Forces of friction on the nodes of a claimed solution: known where the sides slide, and within their bound where they stick.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use nalgebra::DVector;
 
@@ -114,6 +114,14 @@ pub(super) fn coupled(problem: &Problem, holds: &Holds, slides: &[EndSlide]) -> 
             [Some(end.0), end.1].into_iter().flatten().for_each(|v| meeting.entry(v).or_default().push(end));
         }
     }
+    // Two contacts on one line share what resists sliding where they meet.
+    let mut rubbing: HashMap<usize, HashSet<usize>> = HashMap::new();
+    for slide in slides {
+        for v in [Some(slide.first), slide.second].into_iter().flatten() {
+            rubbing.entry(v).or_default().insert(slide.interface);
+        }
+    }
+    let shared = |v: usize| rubbing.get(&v).is_some_and(|contacts| contacts.len() > 1);
     let askew = |v: usize, tangent: [f64; 2]| match holds.vertices[v] {
         Hold::Line { normal, .. } => dot(normal, tangent).abs().min(cross(normal, tangent).abs()) > ALIGNED,
         _ => false,
@@ -123,7 +131,10 @@ pub(super) fn coupled(problem: &Problem, holds: &Holds, slides: &[EndSlide]) -> 
             (first, second) != (slide.first, slide.second) || dot(n, slide.tangent).abs() > ALIGNED
         };
         let beside = |v: usize| meeting.get(&v).is_some_and(|ends| ends.iter().any(other));
-        [Some(slide.first), slide.second].into_iter().flatten().any(|v| askew(v, slide.tangent) || beside(v))
+        [Some(slide.first), slide.second]
+            .into_iter()
+            .flatten()
+            .any(|v| askew(v, slide.tangent) || beside(v) || shared(v))
     };
     slides.iter().map(is_coupled).collect()
 }
