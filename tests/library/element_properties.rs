@@ -234,11 +234,13 @@ fn every_traction_in_equilibrium_has_one_field() {
 #[test]
 fn elastic_solutions_are_found() {
     sweep(|case| {
+        // The parameters carry the rounding of the tractions as often as the tractions of the modes are ill-conditioned.
+        let carried = 1e3 * f64::EPSILON * stress::traction_condition(&case.fields);
         for n in 2..=case.degree() + 2 {
             for kind in 0..4 {
                 let (left, apart) = figures::patch(case, |x| airy::biharmonic(n, kind, x));
-                prop_assert!(left < 1e-8, "p = {}, left {left:.1e}", case.degree());
-                prop_assert!(apart < 1e-8, "p = {}, apart {apart:.1e}", case.degree());
+                prop_assert!(left < 1e-12, "p = {}, left {left:.1e}", case.degree());
+                prop_assert!(apart < carried, "p = {}, apart {apart:.1e}, of rounding {carried:.1e}", case.degree());
             }
         }
         Ok(())
@@ -252,7 +254,7 @@ fn tractions_of_polynomial_stresses_are_met() {
         let k = case.degree() + 2;
         for i in 0..=k {
             let (left, _) = figures::patch(case, |[x, y]| airy::times(airy::power(x, i), airy::power(y, k - i)));
-            prop_assert!(left < 1e-8, "p = {}, left {left:.1e}", case.degree());
+            prop_assert!(left < 1e-12, "p = {}, left {left:.1e}", case.degree());
         }
         Ok(())
     });
