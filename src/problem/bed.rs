@@ -105,6 +105,15 @@ impl EdgeWeight {
         self.rule([0.0, 1.0], 2 * (f.len() - 1)).iter().map(square).sum()
     }
 
+    /// ∫ f g over the weight, for weighted functions on an edge of length one.
+    pub fn product_over(&self, f: &[f64], g: &[f64]) -> f64 {
+        if self.0.is_none() {
+            return side::integral(f, g);
+        }
+        let product = |p: &SidePoint| p.weight * side::value(f, p.at) * side::value(g, p.at) / p.radius;
+        self.rule([0.0, 1.0], f.len() + g.len() - 2).iter().map(product).sum()
+    }
+
     /// A rule on a part of an edge of length one, exact for polynomials of degree `degree`, and with [`SidePoint::excess`] for those over the
     /// weight.
     pub fn rule(&self, [from, to]: [f64; 2], degree: usize) -> Vec<SidePoint> {

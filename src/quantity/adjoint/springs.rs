@@ -1,7 +1,9 @@
 //! Springs and elastic layers in an adjoint pair: one more stress, with the compliance 1/k.
 //!
 //! The exact traction q = k j(u) of a spring belongs to τ as the stress of a triangle does, k j(z) to σ(z), and to σ_z what the
-//! load of the quantity leaves of the traction of σ̂ on the first side: q_z = p − T(σ̂)·d. Products are ∫ q r/k.
+//! load of the quantity leaves of the traction of σ̂ on the first side: q_z = p − T(σ̂)·d. Products are ∫ q₁ q₂/k.
+//!
+//! On a body of revolution tractions are weighted with the distance r from the axis, q = r p − T(σ̂)·d, and products are ∫ q₁ q₂/kr.
 
 use super::pass::Integrals;
 use crate::bounds::{OnSprings, spring_jumps, spring_tractions};
@@ -28,12 +30,11 @@ pub fn adjoint_of(problem: &Problem, functional: &Functional, adjoint: &StressFi
         for (axis, own) in pair.axes.iter().zip(&mut own) {
             own.iter_mut().for_each(|t| *t = -*t);
             for (_, ends) in applied(pair.edge) {
-                let degree = own.len() - 1;
-                let load = side::linear(ends.map(|p| dot(p, *axis)), degree);
-                own.iter_mut().zip(load).for_each(|(q, p)| *q += p);
+                *own = combined(1.0, own, 1.0, &pair.weight.times(&ends.map(|p| dot(p, *axis))));
             }
             for (_, load) in functional.load.edges.iter().filter(|(on, _)| *on == pair.edge) {
-                *own = combined(1.0, own, 1.0, &load.iter().map(|p| dot(*p, *axis)).collect::<Vec<_>>());
+                let load: Vec<f64> = load.iter().map(|p| dot(*p, *axis)).collect();
+                *own = combined(1.0, own, 1.0, &pair.weight.times(&load));
             }
         }
         own
@@ -41,12 +42,12 @@ pub fn adjoint_of(problem: &Problem, functional: &Functional, adjoint: &StressFi
     problem.bed_pairs().map(|(pair, _)| of(pair)).collect()
 }
 
-/// ½ (q(λ) + k j(v)).
+/// ½ (q(λ) + k j(v)), weighted.
 pub fn middle_of(problem: &Problem, stress: &StressField, v: &Displacement) -> OnSprings {
     let of = |(pair, stiffness): (&BedPair, [f64; 2])| {
         let (tractions, (jumps, _)) = (spring_tractions(problem, stress, pair), spring_jumps(problem, v, pair));
         let along = tractions.iter().zip(&jumps).zip(stiffness);
-        let mut along = along.map(|((t, j), k)| combined(-0.5, t, 0.5 * k, j));
+        let mut along = along.map(|((t, j), k)| combined(-0.5, t, 0.5 * k, &pair.weight.times(j)));
         [along.next().unwrap_or_default(), along.next().unwrap_or_default()]
     };
     problem.bed_pairs().map(of).collect()
@@ -63,7 +64,7 @@ pub fn combined(a: f64, f: &[f64], b: f64, g: &[f64]) -> Vec<f64> {
 pub fn square_of(problem: &Problem, q: &OnSprings) -> f64 {
     let of = |((pair, stiffness), q): ((&BedPair, [f64; 2]), &[Vec<f64>; 2])| {
         let along = q.iter().zip(stiffness).filter(|(_, k)| *k > 0.0);
-        along.map(|(q, k)| pair.length * side::integral(q, q) / k).sum::<f64>()
+        along.map(|(q, k)| pair.length * pair.weight.square_over(q) / k).sum::<f64>()
     };
     problem.bed_pairs().zip(q).map(of).sum()
 }
@@ -73,7 +74,7 @@ pub fn product_of(problem: &Problem, v: &Displacement, w: &Displacement) -> f64 
     let of = |(pair, stiffness): (&BedPair, [f64; 2])| {
         let [(v, _), (w, _)] = [spring_jumps(problem, v, pair), spring_jumps(problem, w, pair)];
         let along = v.iter().zip(&w).zip(stiffness);
-        along.map(|((v, w), k)| k * pair.length * side::integral(v, w)).sum::<f64>()
+        along.map(|((v, w), k)| k * pair.length * side::integral(v, &pair.weight.times(w))).sum::<f64>()
     };
     problem.bed_pairs().map(of).sum()
 }
@@ -83,7 +84,10 @@ pub fn uncancelled_of(problem: &Problem, stress: &StressField, v: &Displacement)
     let of = |(pair, stiffness): (&BedPair, [f64; 2])| {
         let (tractions, (_, sizes)) = (spring_tractions(problem, stress, pair), spring_jumps(problem, v, pair));
         let along = tractions.iter().zip(sizes).zip(stiffness).filter(|(_, k)| *k > 0.0);
-        along.map(|((t, size), k)| pair.length * (side::integral(t, t) / k + k * size * size)).sum::<f64>()
+        let square = |((t, size), k): ((&Vec<f64>, f64), f64)| {
+            pair.length * (pair.weight.square_over(t) / k + k * pair.weight.mean() * size * size)
+        };
+        along.map(square).sum::<f64>()
     };
     problem.bed_pairs().map(of).sum()
 }
@@ -99,15 +103,15 @@ pub fn terms(
         let (jumps, sizes) = spring_jumps(problem, lifted, pair);
         let mut out = SpringTerms::default();
         for (c, k) in stiffness.into_iter().enumerate().filter(|(_, k)| *k > 0.0) {
-            let off = combined(1.0, &q[c], -factor * k, &jumps[c]);
+            let off = combined(1.0, &q[c], -factor * k, &pair.weight.times(&jumps[c]));
             let by = pair.length / k;
-            let whole = by * side::integral(&q[c], &q[c]);
+            let whole = by * pair.weight.square_over(&q[c]);
             for (into, own) in [(&mut out.pair, &off), (&mut out.alone, &q[c])] {
-                into.square += by * side::integral(own, own);
-                into.work += by * side::integral(own, &m[c]);
+                into.square += by * pair.weight.square_over(own);
+                into.work += by * pair.weight.product_over(own, &m[c]);
                 into.uncancelled += whole;
             }
-            out.pair.uncancelled += pair.length * k * (factor * sizes[c]).powi(2);
+            out.pair.uncancelled += pair.length * k * pair.weight.mean() * (factor * sizes[c]).powi(2);
             out.balanced += whole;
         }
         out
