@@ -125,8 +125,12 @@ impl Bracket {
         upper - self.lower() <= self.round_off || self.relative_error(upper) <= enough
     }
 
-    /// √(gap / 𝒮(λ_h)) for an upper bound `upper`; zero where there is no stress, and no gap but round-off of the data.
+    /// √(gap / 𝒮(λ_h)) for an upper bound `upper`; zero where there is no stress, and no gap but round-off of the data, and infinite where
+    /// `upper` is no number.
     pub fn relative_error(&self, upper: f64) -> f64 {
+        if upper.is_nan() {
+            return f64::INFINITY;
+        }
         let (gap, strain) = ((upper - self.lower()).max(0.0), self.complementary.strain);
         // Without stress there is no energy to be relative to, and no error.
         if gap == 0.0 || (strain <= self.round_off && gap <= self.round_off) { 0.0 } else { (gap / strain).sqrt() }

@@ -34,7 +34,7 @@ use crate::vector::dot;
 /// A coefficient this close below its bound, relative to the largest displacement, is closed.
 const CLOSED: f64 = 1e-9;
 /// Relative rounding error of each product of a stiffness entry with a displacement: about twenty of them meet in a node.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Directions shorter than this after projection onto the free directions of supports are held by supports.
 const HELD: f64 = 1e-9;
 

@@ -85,11 +85,13 @@ pub(super) struct Sizes {
     pub supported: f64,
 }
 
-impl Extent {
-    /// Residual of nodal forces that the digits of a file may leave, on a field of strain energy `strain`: part of what the smallest of its
-    /// causes leaves when it is 5 % off, loads or initial strains, and where there is neither, the forces at supports and contacts.
-    pub(super) fn digits_of_forces(&self, Sizes { data, supported }: Sizes, strain: f64) -> f64 {
-        let supported = self.of_forces(strain) * supported;
+impl Sizes {
+    /// Residual of nodal forces that the digits of a file may leave, on a field whose forces are those of a solution times `larger`: part of
+    /// what the smallest of its causes leaves when it is 5 % off, loads or initial strains, and where there is neither, the forces at supports
+    /// and contacts.
+    pub(super) fn ceiling(self, larger: f64) -> f64 {
+        let Sizes { data, supported } = self;
+        let supported = larger * supported;
         let all = data.into_iter().fold(supported, f64::max);
         let seen = data.into_iter().filter(|size| *size > UNSEEN * all).reduce(f64::min);
         PART * MISTAKE * seen.unwrap_or(supported)

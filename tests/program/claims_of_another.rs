@@ -64,6 +64,14 @@ fn every_body_carries_its_own_load() {
     assert!(code == 1 && checks.iter().any(|check| check["name"] == "solution/reactions"), "{checks:?}");
 }
 
+/// Of a body on springs of its own, whose load is a millionth of that of another, Young's modulus is 5 % off.
+#[test]
+fn forces_elsewhere_hide_nothing_of_a_body_that_stands_apart() {
+    assert_eq!(claimed("apart", "apart"), (0, Vec::new()));
+    let (code, checks) = claimed("apart", "apart_stiffer");
+    assert!(code == 1 && checks.iter().any(|check| check["name"] == "solution/residual"), "{checks:?}");
+}
+
 #[test]
 fn the_simplest_mistake_is_named_where_others_would_do() {
     let ring = explained("ring", "ring_unloaded");

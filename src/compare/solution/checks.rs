@@ -49,6 +49,16 @@ impl Solution<'_> {
     fn residual_check(&self) -> Check {
         let worst: Vec<String> = self.worst().into_iter().take(NAMED).map(|n| self.force_at(n)).collect();
         let residual = self.residual();
+        // Forces elsewhere say nothing of a piece that stands apart.
+        if let (true, Some(piece)) = (residual <= self.allowed(), self.apart()) {
+            let what = format!(
+                "The stresses of a discrete solution balance the loads on every basis function of degree {}: what is left of the nodal forces \
+                 of {}, which nothing connects with the rest, relative to its own.",
+                self.candidate.degree,
+                piece.bodies.join(", ")
+            );
+            return self.claimed("solution/residual", piece.residual, piece.allowance, what);
+        }
         let places = match residual > self.allowed() {
             true => format!(" Most is left at {}.", worst.join("; ")),
             false => String::new(),

@@ -15,7 +15,7 @@ impl Solution<'_> {
         self.larger = extent.of_forces(self.strain);
         let supported = self.forces.energy_size(|i| self.forces.left[i][0].hypot(self.forces.left[i][1]));
         let sizes = Sizes { data: self.forces.energy_sizes(), supported };
-        self.ceiling = extent.digits_of_forces(sizes, self.strain) / self.scale;
+        self.ceiling = sizes.ceiling(self.larger) / self.scale;
         self
     }
 

@@ -6,6 +6,7 @@
 //! checked for complementarity separately. A method may bound the jump at its nodes or in its Bernstein
 //! coefficients, which differ at the end of contact: either of the two is accepted.
 
+mod apart;
 mod checks;
 mod digits;
 mod nonmatching;
