@@ -32,6 +32,9 @@ def load(mesh, e):
     return [[size * x - pressure * y for x, y in zip(traction.at(mesh.written(v)), n)] for v in mesh.edges[e].tolist()]
 
 
+HIGHEST = 24  # Degrees beyond this have no use, and matrices that fill the memory.
+
+
 class Stress:
     def __init__(self, mesh, data):
         self.mesh, self.extra = mesh, arb(0)
@@ -41,6 +44,8 @@ class Stress:
         sizes = [len(x) for x in (counts, values, pair_counts, pressures, self.degrees)]
         if sizes != [len(mesh.edges), counts.sum(), len(contacts), pair_counts.sum(), len(mesh.triangles)] or counts.min() < 2:
             raise Refused("the proof does not have a traction for every edge and contact pair")
+        if max(self.degrees) > HIGHEST:
+            raise Refused(f"the proof has a stress of degree {max(self.degrees)}; none is above {HIGHEST}")
         if not np.isfinite(values).all() or not np.isfinite(pressures).all():
             raise Refused("a traction of the proof is no number")
         self._candidates(np.split(values, np.cumsum(counts)[:-1]), contacts, np.split(pressures, np.cumsum(pair_counts)[:-1]))

@@ -7,6 +7,7 @@ import json
 import sys
 import time
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ FORMAT = 1
 PART = arb(fmpq(1, 1000))  # of the width, by which a bracket may be wider than claimed: it is told then
 LEAST = arb(10) ** -250  # and what underflows in double precision
 DATA = arb(2) ** -44  # of the energy, by which the data of two meshes, rounded to doubles each for itself, may contradict each other
-UNREADABLE = (OSError, ValueError, EOFError, NotImplementedError, zipfile.BadZipFile, zipfile.LargeZipFile)
+UNREADABLE = (OSError, ValueError, EOFError, NotImplementedError, MemoryError, zlib.error, zipfile.BadZipFile, zipfile.LargeZipFile)
 
 
 def read(path):
@@ -40,6 +41,13 @@ def read(path):
     return data
 
 
+def printable(text):
+    """Text of a proof as one line that no terminal takes for anything else."""
+    if not isinstance(text, str):
+        raise TypeError(f"{text!r} is no text")
+    return "".join(c if c.isprintable() else "\ufffd" for c in text)
+
+
 class Proof:
     """The statements that a proof file proves. Raises Refused with the failed check."""
 
@@ -50,6 +58,8 @@ class Proof:
             raise Refused(f"the proof lacks {error}") from None
         except (IndexError, TypeError, ValueError, AttributeError) as error:
             raise Refused(f"the proof is malformed: {error}") from None
+        except MemoryError:
+            raise Refused("the proof does not fit into memory") from None
         except ArithmeticError:
             raise Refused("the numbers of the proof leave the range in which they can be enclosed") from None
 
@@ -59,6 +69,8 @@ class Proof:
             raise Refused(f"the proof has the format {self.manifest['format']}; this checker reads {FORMAT}")
         if hashlib.sha256(text).hexdigest() != self.manifest["scene_sha256"]:
             raise Refused("the scene in the proof is not the one that its hash names")
+        self.name = printable(self.manifest["scene"])
+        self.files = [(printable(file["name"]), printable(file["sha256"])) for file in self.manifest["mesh_files"]]
         scene = Scene(text)
         meshes = [Mesh(data, of, scene, self.manifest) for of in ("stress", "displacement")]
         self.stress, self.displacement = Stress(meshes[0], data), Displacement(meshes[1], data)
@@ -123,7 +135,7 @@ def main(arguments=None):
         print(f"not proved: {failed}.")
         return 1
     told = [f"{abs(float(room)):.1e} {'inside' if room >= 0 else 'OUTSIDE'} what is claimed" for room in proof.room]
-    print(f"proved: the exact energy of {proof.manifest['scene']} lies {between(proof.proved)}.")
+    print(f"proved: the exact energy of {proof.name} lies {between(proof.proved)}.")
     print(f"  lower bound: stress in exact equilibrium on {len(proof.stress.mesh.triangles)} triangles, {told[0]}")
     print(f"  upper bound: admissible displacement on {len(proof.displacement.mesh.triangles)} triangles, {told[1]}")
     for name, ends, claimed in proof.quantities:
@@ -131,8 +143,8 @@ def main(arguments=None):
     for premise in proof.premises:
         print(f"  premise: {premise}")
     print(f"  scene: sha256 {proof.manifest['scene_sha256']}")
-    for file in proof.manifest["mesh_files"]:
-        print(f"  mesh: {file['name']}, sha256 {file['sha256']}")
+    for name, digest in proof.files:
+        print(f"  mesh: {name}, sha256 {digest}")
     print(f"  by hypercircle-check {VERSION}\n  {time.monotonic() - start:.1f} s")
     return 0
 
