@@ -53,6 +53,11 @@ pub(crate) fn percent(x: f64) -> String {
     if x.is_finite() { format!("{} %", significant(100.0 * x, 3)) } else { "–".to_string() }
 }
 
+/// As [`percent`], for what a ratio is at most: rounded up.
+pub(crate) fn at_most_percent(x: f64) -> String {
+    if x.is_finite() { format!("{} %", outward(100.0 * x, 3, true)) } else { "–".to_string() }
+}
+
 /// A vector in parentheses.
 pub(crate) fn vector(v: [f64; 2], digits: usize) -> String {
     format!("({}, {})", significant(v[0], digits), significant(v[1], digits))

@@ -2,7 +2,7 @@
 
 use super::{Findings, in_numbers};
 use crate::cause::Cause;
-use crate::report::text::number::{digits_to_tell, percent, significant};
+use crate::report::text::number::{at_most_percent, digits_to_tell, outward, percent};
 use crate::report::{Energy, Status};
 use crate::scene::capital;
 use crate::study::coulomb::Coulomb;
@@ -27,9 +27,9 @@ pub(in crate::study) fn verdict(
         };
         let sentence = format!(
             "{whose}the exact energy{of} lies between {} and {}; the {what} relative energy-norm error is at most {}.",
-            significant(e.lower, digits_to_tell(e.lower, e.upper)),
-            significant(e.upper, digits_to_tell(e.lower, e.upper)),
-            percent(e.relative_error_bound)
+            outward(e.lower, digits_to_tell(e.lower, e.upper), false),
+            outward(e.upper, digits_to_tell(e.lower, e.upper), true),
+            at_most_percent(e.relative_error_bound)
         );
         format!(" {}", capital(&sentence))
     });
@@ -103,9 +103,9 @@ fn of_field(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
     let (whose, bound) = of_which(findings);
     let sentence = format!(
         "{whose}the {what} relative energy-norm error of {of} is at most {}: its energy{bound} is {}, and the exact one is no lower than {}.",
-        percent(in_numbers(judged.relative_error(sharpest))),
-        significant(upper, digits_to_tell(energy.lower, upper)),
-        significant(energy.lower, digits_to_tell(energy.lower, upper)),
+        at_most_percent(in_numbers(judged.relative_error(sharpest))),
+        outward(upper, digits_to_tell(energy.lower, upper), true),
+        outward(energy.lower, digits_to_tell(energy.lower, upper), false),
     );
     format!(" {}", capital(&sentence))
 }
