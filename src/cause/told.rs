@@ -151,7 +151,7 @@ fn failed(check: &Check) -> String {
         }
         ("quantity", name, source) => {
             let own = if check.allowed > 0.0 {
-                format!(", and {allowed} is all that its own error explains")
+                format!(", and its own error and rounding explain {allowed} at most")
             } else {
                 String::new()
             };

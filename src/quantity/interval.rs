@@ -111,6 +111,11 @@ impl Interval {
     pub fn half_width(&self) -> f64 {
         0.5 * (self.ends[1] - self.ends[0])
     }
+
+    /// Half of the width relative to the value; zero where only rounding is between the ends, and no mesh brings them closer.
+    pub fn relative_half_width(&self) -> f64 {
+        if self.half_width() <= self.rounding { 0.0 } else { self.half_width() / self.value.abs() }
+    }
 }
 
 impl Functional {

@@ -37,5 +37,5 @@ pub(crate) use dossier::provenance::{hash, hex, identifier, locked_version};
 pub use dossier::{Findings, assemble, infeasible};
 pub use field::{FieldArrays, FieldError, ForeignField};
 pub use primal::{candidates, pins};
-pub use quantity_checks::{GivenValue, Meant, quantity_checks, summaries, value_checks, wanted_checks};
+pub use quantity_checks::{GivenValue, quantity_checks, summaries, value_checks, wanted_checks};
 pub use ranges::OtherEnd;

@@ -116,22 +116,12 @@ fn told(problem: &Problem, form: &Form, judged: &Judged) -> Result<Told, String>
     }
 }
 
-/// How a value outside an interval is judged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Meant {
-    /// A discrete solution on this mesh: what its own energy leaves open is allowed.
-    Discrete,
-    /// The exact value.
-    Exact,
-}
-
 /// One check for every quantity and displacement model; `sharpest` is the bracket that is known best of the scene.
 pub fn quantity_checks(
     certified: &Certified,
     sharpest: &Bracket,
     answers: &[Answer],
     comparison: &Comparison,
-    meant: Meant,
     allow: &Allowances,
 ) -> Vec<Check> {
     let mut checks = Vec::new();
@@ -141,18 +131,11 @@ pub fn quantity_checks(
             let field = &judged.candidate.name;
             // What reactions tell of a vertex that is shared is bounded by no energy.
             let Ok(Told { value, remark: None }) = value else { continue };
-            let own = match meant {
-                Meant::Exact => 0.0,
-                Meant::Discrete => OWN_ERROR * own_error(sharpest, answer, judged),
-            };
+            let own = OWN_ERROR * own_error(sharpest, answer, judged);
             if !own.is_finite() {
                 continue;
             }
-            let whose = if own > 0.0 {
-                format!("{field} may miss it by what its own energy leaves open")
-            } else {
-                format!("no correct value lies outside, and that of {field} has to lie inside")
-            };
+            let whose = format!("{field} may miss it by what its own energy leaves open");
             let allowed = own + SOLVED * answer.kind.size(&certified.problem, &scales.data);
             checks.push(inside(&format!("quantity/{}/{field}", answer.name), answer, value, allowed, &whose));
         }
@@ -188,7 +171,7 @@ pub fn wanted_checks(answers: &[Answer], wanted: &[Wanted], allow: &Allowances) 
         match answers.iter().find(|answer| answer.name == wanted.name) {
             Some(Answer { interval, .. }) if interval.half_width().is_finite() => Check::at_most(
                 &name,
-                interval.half_width() / interval.value.abs(),
+                interval.relative_half_width(),
                 0.0,
                 wanted.tolerance,
                 Basis::Asked,

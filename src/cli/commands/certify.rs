@@ -17,7 +17,7 @@ use crate::compare::{Basis, Candidate, Comparison, compare};
 use crate::problem::{Note, Problem};
 use crate::process::limit;
 use crate::study::{
-    self, FieldError, ForeignField, GivenValue, Meant, quantity_checks, tolerance_check, value_checks, wanted_checks,
+    self, FieldError, ForeignField, GivenValue, quantity_checks, tolerance_check, value_checks, wanted_checks,
 };
 
 /// How contact of a field is claimed to hold.
@@ -95,7 +95,8 @@ fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {
     let mut session = Session::open("certify", scene, &args.solve, args.run.quiet, &args.job)?;
     args.proof.refuse_early(&session)?;
     let given = args.values.all(&mut session.scene)?;
-    refuse_unknown(&session.scene, given.iter().map(|value| value.name.as_str()))?;
+    let wanted = args.solve.tolerance_of.iter().map(|of| of.name.as_str());
+    refuse_unknown(&session.scene, given.iter().map(|value| value.name.as_str()).chain(wanted))?;
     let has_field = !args.displacement.is_empty();
     if has_field {
         refuse_refinement(&args.solve)?;
@@ -204,8 +205,7 @@ fn held(
     }
     let answers = session.sharpest_answers(run, sharpened.as_ref(), &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
-    let meant = if args.solution { Meant::Discrete } else { Meant::Exact };
-    comparison.checks.extend(quantity_checks(certified, &sharpest.bracket, &answers, &comparison, meant, &allow));
+    comparison.checks.extend(quantity_checks(certified, &sharpest.bracket, &answers, &comparison, &allow));
     comparison.checks.extend(value_checks(&answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty(), &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;

@@ -17,7 +17,7 @@ use crate::primal::{self, HIGHEST_DEGREE, PrimalError, SolverCommand, WantedCell
 use crate::problem::Note;
 use crate::process::limit;
 use crate::scene::Kinematics;
-use crate::study::{Meant, candidates, diagnoses, pins, quantity_checks, tolerance_check, wanted_checks};
+use crate::study::{candidates, diagnoses, pins, quantity_checks, tolerance_check, wanted_checks};
 
 /// Options of `verify`.
 #[derive(Debug, clap::Args)]
@@ -224,7 +224,7 @@ pub fn verified(args: &Args, session: &Session, folder: Option<&Path>) -> Result
     let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
     let answers = session.sharpest_answers(&run, sharpened.as_ref(), &args.solve);
     comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
-    let of_models = quantity_checks(certified, &sharpest.bracket, &answers, &comparison, Meant::Discrete, &allow);
+    let of_models = quantity_checks(certified, &sharpest.bracket, &answers, &comparison, &allow);
     comparison.checks.extend(of_models);
     args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some(), &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;

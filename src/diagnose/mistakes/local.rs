@@ -139,6 +139,10 @@ impl<'a> Places<'a> {
         } else {
             let kinematics = self.space.problem().scene.kinematics;
             let [young, poisson] = Moduli::engineering(kinematics, lambda + x[0], mu + x[1]);
+            // Of no body: it is missing, or wrong in another way.
+            if !(young > 0.0 && -1.0 < poisson && poisson < 0.5) {
+                return self.assembled(t);
+            }
             (None, format!("{name} has the material E = {}, ν = {}", number(young), number(poisson)))
         };
         Trial { rank: 4, left, findings: vec![Finding::new("triangle/material", value, None, sentence)] }

@@ -77,9 +77,6 @@ impl Functional {
     pub fn new(problem: &Problem, quantity: &Quantity) -> Result<Self, NotBounded> {
         if problem.section().is_revolved() {
             refuse_in_revolved(&quantity.target)?;
-            if !problem.beds.is_empty() {
-                return Err(NotBounded::Revolved { what: "quantities of bodies on springs or with elastic layers" });
-            }
         }
         match &quantity.target {
             Target::Displacement { of: Extent::Boundary(name), direction } => on_boundary(problem, name, *direction),
@@ -103,6 +100,11 @@ impl Functional {
                 tangential_force(problem, *contact, |s| window.map_or(1.0, |window| trapezoid(window, s)))
             }
             Target::ContactForce { contact, tangential: false, window } => {
+                if let (Some(window), Some([from, to])) = (window, extent(problem, *contact))
+                    && (window[3] <= from || to <= window[0])
+                {
+                    return Err(NotBounded::WindowOutside { window: [window[0], window[3]], contact: [from, to] });
+                }
                 let weight = |s: f64| window.map_or(1.0, |window| trapezoid(window, s));
                 // Pressure is positive.
                 Ok(on_contact(problem, *contact, Kind::Force, |_, pair| pair.arc.map(|s| -weight(s)).to_vec()))
@@ -222,6 +224,12 @@ impl Functional {
         self.beside = self.load.turned.iter().map(stress).collect();
         self
     }
+}
+
+/// The arc lengths between which a contact lies; `None` where it has no edges.
+fn extent(problem: &Problem, contact: usize) -> Option<[f64; 2]> {
+    let pairs = &problem.interfaces.get(contact)?.pairs;
+    Some([pairs.first()?.arc[0], pairs.last()?.arc[1]])
 }
 
 /// Name, in messages, of a force with a component across the axis.

@@ -37,6 +37,18 @@ pub enum NotBounded {
         /// Name of the body.
         body: String,
     },
+    /// A window beside the contact.
+    #[error(
+        "the window from {} to {} lies beside the contact, whose first side runs from {} to {}; give a window on it, in arc length along that \
+         side",
+        .window[0], .window[1], .contact[0], .contact[1]
+    )]
+    WindowOutside {
+        /// Its ends.
+        window: [f64; 2],
+        /// Those of the contact.
+        contact: [f64; 2],
+    },
     /// A stress intensity where there is no tip of a crack.
     #[error(transparent)]
     NoTip(#[from] NoTip),

@@ -288,7 +288,7 @@ fn open(certified: &Certified, options: &Options, goal: &Goal, gap: &Indicators)
     for answer in answers(certified, options, |name| wanted(name).is_some()) {
         let Some(tolerance) = wanted(&answer.name).map(|wanted| wanted.tolerance) else { continue };
         let allowed = tolerance * answer.interval.value.abs();
-        let left = answer.interval.half_width() / allowed;
+        let left = answer.interval.relative_half_width() / tolerance;
         if left <= 1.0 {
             continue;
         }

@@ -47,7 +47,11 @@ impl Along<'_> {
             );
             return Some(self.found("friction-sign", Some(times), Some(1.0), sentence));
         }
-        let thousands = times.abs().log10() / 3.0;
+        // No other number below zero is a bound.
+        if times < 0.0 {
+            return None;
+        }
+        let thousands = times.log10() / 3.0;
         let how = match () {
             () if near(times, 2.0) || near(times, 0.5) => ", as if one of the two sides counted twice or half",
             () if thousands.round() != 0.0 && (thousands - thousands.round()).abs() < ABOVE => {

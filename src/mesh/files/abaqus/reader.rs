@@ -165,6 +165,12 @@ impl Reader {
         let tags = match shape {
             Some((kind, count, shell)) => {
                 let rows = rows(keyword, name, kind, count)?;
+                for (tag, nodes, place) in &rows {
+                    let is_same = |cell: &Cell| cell.tag == *tag && cell.nodes == *nodes;
+                    if !mesh.elements.insert(*tag) && !mesh.cells.iter().any(is_same) {
+                        return Err(place.fault(format!("element {tag} is there twice, with other nodes"), DAMAGED));
+                    }
+                }
                 let tags = rows.iter().map(|(tag, _, _)| *tag).collect();
                 let cell = |(tag, nodes, place)| Cell { kind, shell, tag, nodes, place };
                 mesh.cells.extend(rows.into_iter().map(cell));
