@@ -70,18 +70,26 @@ fn short(x: f64) -> f64 {
     if rounded == 0.0 { 0.0 } else { rounded }
 }
 
-/// The deepest penetration of `candidate` in contact `interface`, or in any contact if none is given: place, interface and depth.
+/// Penetration at nodes below this part of that between them is what touching nodes have of rounding.
+const AT_NODES: f64 = 0.01;
+
+/// The deepest penetration of `candidate` in contact `interface`, or in any contact if none is given: place, interface and depth. Where nodes
+/// do no more than touch it is that between them, by the largest Bernstein coefficient of the edge.
 pub(super) fn deepest(
     problem: &Problem,
     candidate: &Candidate,
     interface: Option<usize>,
 ) -> Option<(Place, usize, f64)> {
     let sites = Sites::new(problem, candidate.degree, &holds(problem).ok()?);
-    let own = sites.list.iter().filter(|site| interface.is_none_or(|i| site.interface == i));
-    let depth = |node| candidate.value(node);
-    let deepest = own.max_by(|a, b| a.excess(depth).total_cmp(&b.excess(depth)))?;
-    let place = Place::of(problem, deepest.first, Some(deepest.interface));
-    Some((place, deepest.interface, deepest.excess(depth)))
+    let at_nodes: Vec<f64> = sites.list.iter().map(|site| site.excess(|node| candidate.value(node))).collect();
+    let between = sites.in_coefficients(&vec![0.0; at_nodes.len()], &at_nodes).1;
+    let is_own = |s: &usize| interface.is_none_or(|i| sites.list[*s].interface == i);
+    let largest = |of: &[f64]| (0..of.len()).filter(is_own).max_by(|a, b| of[*a].total_cmp(&of[*b]));
+    let (node, edge) = (largest(&at_nodes)?, largest(&between)?);
+    let (deepest, depth) =
+        if at_nodes[node] < AT_NODES * between[edge] { (edge, between[edge]) } else { (node, at_nodes[node]) };
+    let site = &sites.list[deepest];
+    Some((Place::of(problem, site.first, Some(site.interface)), site.interface, depth))
 }
 
 /// The place with the largest residual of equilibrium.

@@ -73,6 +73,12 @@ fn forces_elsewhere_hide_nothing_of_a_body_that_stands_apart() {
 }
 
 #[test]
+fn what_the_axis_holds_is_no_matter_of_a_roller_that_meets_it() {
+    let said = explained("rod", "rod_off_the_axis");
+    assert!(said.contains("across the axis of revolution is not zero") && !said.contains("a_bottom"), "{said}");
+}
+
+#[test]
 fn the_simplest_mistake_is_named_where_others_would_do() {
     let ring = explained("ring", "ring_unloaded");
     assert!(ring.contains("load is missing"), "{ring}");

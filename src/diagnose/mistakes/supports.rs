@@ -18,14 +18,14 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
     let (mesh, scene) = (&solution.problem.mesh, &solution.problem.scene);
     let enough = (SOLVER + solution.candidate.precision) * solution.reference;
     let applied = solution.applied();
-    let mut findings = Vec::new();
+    let mut findings: Vec<Finding> = on_axis(solution, enough).into_iter().collect();
     for support in &scene.supports {
         let edges = mesh.boundary(&support.on);
         let vertices = mesh.points.len();
         let nodes: BTreeSet<usize> =
             edges.iter().flat_map(|e| mesh.edges[*e].vertices.into_iter().chain([vertices + e])).collect();
         let nodes: Vec<usize> = nodes.into_iter().filter(|n| *n < solution.rest.len()).collect();
-        let off: Vec<[f64; 2]> = nodes.iter().map(|n| off(solution, *n)).collect();
+        let off: Vec<[f64; 2]> = nodes.iter().map(|n| of_support(solution, *n)).collect();
         let (worst, depth) = nodes.iter().zip(&off).fold((0, 0.0_f64), |(node, most), (n, d)| {
             let size = d[0].hypot(d[1]);
             if size > most { (*n, size) } else { (node, most) }
@@ -72,6 +72,33 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
         });
     }
     findings
+}
+
+/// The displacement across the axis of revolution, where it is not zero: no support says so, and every body that touches it is held there.
+fn on_axis(solution: &Solution<'_>, enough: f64) -> Option<Finding> {
+    let across = |n: usize| off(solution, n)[0].abs();
+    let nodes = (0..solution.rest.len()).filter(|n| is_on_axis(solution, *n));
+    let worst = nodes.max_by(|a, b| across(*a).total_cmp(&across(*b))).filter(|n| across(*n) > enough)?;
+    let (most, place) = (across(worst), solution.named(worst));
+    let sentence =
+        format!("the displacement across the axis of revolution is not zero there: it is {} at {place}", number(most));
+    Some(Finding::new("support/axis/radial", Some(most), Some(0.0), sentence))
+}
+
+/// True for a vertex or the middle of an edge on the axis of revolution.
+fn is_on_axis(solution: &Solution<'_>, node: usize) -> bool {
+    let (problem, mesh) = (solution.problem, &solution.problem.mesh);
+    let on = |v: &usize| problem.section().on_axis(mesh.points[*v]);
+    match node.checked_sub(mesh.points.len()) {
+        None => on(&node),
+        Some(e) => mesh.edges.get(e).is_some_and(|edge| edge.vertices.iter().all(on)),
+    }
+}
+
+/// As [`off`], without what the axis of revolution holds.
+fn of_support(solution: &Solution<'_>, node: usize) -> [f64; 2] {
+    let [x, y] = off(solution, node);
+    [if is_on_axis(solution, node) { 0.0 } else { x }, y]
 }
 
 /// True if a support misses along axis `c` alone, and no force acts along it.

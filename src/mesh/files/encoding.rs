@@ -1,4 +1,6 @@
-//! The encoding of text files: ASCII or UTF-8, with a byte order mark or without.
+//! The encoding of text files: ASCII, UTF-8 with a byte order mark or without, or Latin-1.
+
+use std::borrow::Cow;
 
 /// The bytes of a text file without the byte order mark of UTF-8.
 ///
@@ -12,5 +14,24 @@ pub(super) fn text(bytes: &[u8]) -> Result<&[u8], &'static str> {
     }
 }
 
+/// The text of bytes; what is no UTF-8 is Latin-1, so that names that differ still do.
+pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => Cow::Owned(bytes.iter().map(|b| char::from(*b)).collect()),
+    }
+}
+
 /// What to do about a file in another encoding.
 pub(super) const SAVE_AS_UTF8: &str = "save it as UTF-8 or ASCII text";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_in_latin_1_stay_apart() {
+        assert_eq!(decoded("W\u{fc}".as_bytes()), "W\u{fc}");
+        assert_eq!([decoded(b"W\xfc"), decoded(b"W\xf6")], ["W\u{fc}", "W\u{f6}"]);
+    }
+}

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::mesh::MeshError;
+use crate::mesh::files::encoding::decoded;
 
 /// How the numbers of a section are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,7 +67,7 @@ impl<'a> Cursor<'a> {
         }
         let length = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
         self.position += (length + 1).min(rest.len());
-        Some(String::from_utf8_lossy(&rest[..length]).trim().to_string())
+        Some(decoded(&rest[..length]).trim().to_string())
     }
 
     /// The next line that is not empty.
