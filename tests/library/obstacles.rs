@@ -133,6 +133,7 @@ fn what_does_not_belong_to_an_obstacle_is_refused() {
         (format!("on = \"foot\"\n{line}\nnormals = \"facets\""), "normals"),
         (format!("on = \"foot\"\n{line}\ndirection = [0, 1]"), "direction"),
         ("on = \"foot\"\nmove = [0, 1]".to_string(), "move"),
+        (format!("on = \"foot\"\n{line}\nmove = [0.1, 0.02]\nfriction = {{ bound = 0.1 }}"), "along itself"),
         ("on = \"foot\"\nobstacle = { line = [[0, 0]] }".to_string(), "line"),
         ("on = \"foot\"\nobstacle = { line = [[0, 0], [0, 0]] }".to_string(), "differ"),
         ("on = \"foot\"\nobstacle = { circle = { centre = [0, 0], radius = -1 } }".to_string(), "radius"),
@@ -142,5 +143,9 @@ fn what_does_not_belong_to_an_obstacle_is_refused() {
     ] {
         let error = Scene::parse(&scene(&contact), "s.toml".as_ref()).expect_err(&contact).to_string();
         assert!(error.contains(words), "{contact}: {error}");
+    }
+    for across in ["move = [0, 0.02]\nfriction = { bound = 0.1 }", "move = [0.1, 0.02]", "friction = { bound = 0.1 }"] {
+        let text = scene(&format!("on = \"foot\"\n{line}\n{across}"));
+        Scene::parse(&text, "s.toml".as_ref()).unwrap_or_else(|e| panic!("{across}: {e}"));
     }
 }

@@ -5,6 +5,9 @@ use crate::scene::reading::fault::Fault;
 use crate::scene::reading::raw::{At, RawContact, RawObstacle, Table};
 use crate::scene::reading::source::Source;
 
+/// The cosine between a motion and a line up to which the motion is across it, but for rounding.
+const ALONG: f64 = 1e-12;
+
 /// A rigid obstacle that lies where the scene puts it, whatever the shape of the boundary that meets it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Obstacle {
@@ -59,6 +62,18 @@ impl Obstacle {
         matches!(self.shape, Shape::Line(_))
     }
 
+    /// True if it moves along itself somewhere, which only friction notices.
+    fn slides(&self) -> bool {
+        let [x, y] = self.moved;
+        match self.shape {
+            Shape::Line([a, b]) => {
+                let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+                (x * dx + y * dy).abs() > ALONG * x.hypot(y) * dx.hypot(dy)
+            }
+            Shape::Circle { .. } => self.moved != [0.0; 2],
+        }
+    }
+
     /// Counts coordinates from `origin`.
     pub(in crate::scene) fn shift(&mut self, origin: [f64; 2]) {
         let move_point = |p: &mut [f64; 2]| *p = [p[0] - origin[0], p[1] - origin[1]];
@@ -106,7 +121,18 @@ pub(in crate::scene) fn obstacle(
         return Err(elsewhere("direction", with, direction.span()));
     }
     let moved = contact.moved.as_ref().map(|moved| source.vector(moved, (table, "move"))).transpose()?;
-    Ok(Some(Obstacle { shape: shape(raw, table, source)?, moved: moved.unwrap_or_default() }))
+    let own = Obstacle { shape: shape(raw, table, source)?, moved: moved.unwrap_or_default() };
+    if let (Some(moved), Some(friction)) = (&contact.moved, &contact.friction)
+        && own.slides()
+    {
+        let remedy = "move the obstacle across itself alone; in the place of what it moves along itself, move the supports of the body the other \
+                      way";
+        let other = "`friction`, which would resist that the obstacle moves along itself";
+        let error =
+            source.error(moved.span(), Fault::Misplaced { key: "move", table: table.to_owned(), other, remedy });
+        return Err(error.with_related(friction.span(), "the friction"));
+    }
+    Ok(Some(own))
 }
 
 fn shape(raw: &At<Table<RawObstacle>>, table: &str, source: &Source) -> Result<Shape, SceneError> {

@@ -29,7 +29,7 @@ pub(in crate::scene) struct RawContact {
     pub direction: Option<Pair>,
     /// A rigid obstacle with a place of its own, which the boundary `on` may touch, or overlap at the start.
     pub obstacle: Option<At<Table<RawObstacle>>>,
-    /// By how much the obstacle moves.
+    /// By how much the obstacle moves; with friction across itself alone.
     #[serde(rename = "move")]
     #[schemars(with = "Option<[f64; 2]>")]
     pub moved: Option<Pair>,
