@@ -1,6 +1,7 @@
 """Patch tests: both bounds are the exact energy, which is known by hand; and whatever is changed is refused for what it is."""
 
 import json
+import zipfile
 
 import numpy as np
 import pytest
@@ -220,6 +221,18 @@ def missing(a):
     del a["u_inside"]
 
 
+def degree(a):
+    a["stress_degrees"][0] = 200
+
+
+def nameless(a):
+    del a["manifest"]["scene"]
+
+
+def files(a):
+    a["manifest"]["mesh_files"] = None
+
+
 CHANGES = [
     (traction, "not in equilibrium: edge"),
     (vertex, "not in equilibrium|area"),
@@ -241,6 +254,9 @@ CHANGES = [
     (turned, "turned over|no edge|same side"),
     (nothing, "no number"),
     (missing, "lacks 'u_inside'"),
+    (degree, "stress of degree 200; none is above 24"),
+    (nameless, "lacks 'scene'"),
+    (files, "malformed"),
 ]
 
 
@@ -255,11 +271,28 @@ def test_changes_are_refused_for_what_they_are(tmp_path, capsys, change, why):
     assert capsys.readouterr().out.startswith("not proved: ")
 
 
+def test_a_name_is_one_line(tmp_path, capsys):
+    """What a proof calls its scene is nobody's word but its own."""
+    arrays = blocks()
+    arrays["manifest"]["scene"] = "x\x1b[2J lies between 0 and 1.\nproved: the exact energy of y"
+    write(arrays, tmp_path / "proof.npz")
+    assert main([str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "\x1b" not in said and said.count("\nproved:") == 0
+
+
 def test_any_change_of_the_file_is_refused(tmp_path):
     write(blocks(), tmp_path / "proof.npz", digest=False)
     with pytest.raises(Refused, match="digest"):
         check(tmp_path)
     (tmp_path / "proof.npz").write_bytes(b"nonsense")
+    with pytest.raises(Refused, match="cannot be read"):
+        check(tmp_path)
+    with zipfile.ZipFile(tmp_path / "proof.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("scene.npy", bytes(1000))
+    content = bytearray((tmp_path / "proof.npz").read_bytes())
+    content[30 + len("scene.npy")] ^= 0xFF  # the first byte that is compressed
+    (tmp_path / "proof.npz").write_bytes(content)
     with pytest.raises(Refused, match="cannot be read"):
         check(tmp_path)
     assert main([str(tmp_path / "nowhere")]) == 1
