@@ -6,7 +6,7 @@
 use super::Certified;
 use crate::bounds::Bracket;
 use crate::problem::{Note, Problem};
-use crate::report::text::number::{digits_to_tell, significant};
+use crate::report::text::number::{digits_to_tell, enclosing, outward, significant};
 use crate::report::{DataRangeSummary, RangedParameter};
 
 /// The scene of the ends with the highest energy, solved.
@@ -55,11 +55,11 @@ pub(super) fn in_words(range: &DataRangeSummary) -> String {
     match range.upper {
         Some(upper) => {
             let digits = digits_to_tell(range.lower, upper);
-            let [lower, upper] = [range.lower, upper].map(|e| significant(e, digits));
+            let [lower, upper] = enclosing([range.lower, upper], digits);
             format!(" For all data in the ranges of the scene the exact energy lies between {lower} and {upper}.")
         }
         None => {
-            let lower = significant(range.lower, 6);
+            let lower = outward(range.lower, 6, false);
             format!(" For all data in the ranges of the scene the exact energy is no lower than {lower}.")
         }
     }

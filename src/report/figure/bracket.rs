@@ -3,7 +3,7 @@
 use super::axis::Axis;
 use super::svg::{Anchor, Svg, look};
 use crate::report::Report;
-use crate::report::text::number::{digits_to_tell, significant};
+use crate::report::text::number::{digits_to_tell, enclosing, significant};
 use crate::report::text::words::energies;
 
 const WIDTH: f64 = 560.0;
@@ -21,13 +21,9 @@ pub fn bracket(report: &Report) -> String {
     };
     let (lower, upper) = (energy.lower, energy.upper);
     let list: Vec<(String, f64)> = energies(report).into_iter().filter(|e| e.1.is_finite()).collect();
-    let digits = digits_to_tell(lower, upper);
-    let label = format!(
-        "The exact energy lies between {} and {}; {} energies are marked on the axis",
-        significant(lower, digits),
-        significant(upper, digits),
-        list.len()
-    );
+    let [from, to] = enclosing([lower, upper], digits_to_tell(lower, upper));
+    let label =
+        format!("The exact energy lies between {from} and {to}; {} energies are marked on the axis", list.len());
     let wide = Axis::over(list.iter().map(|e| e.1).chain([lower, upper]), LABELS, WIDTH - 22.0, false).padded(0.06);
     let zoomed = wide.to - wide.from > 8.0 * (upper - lower).abs() && upper != lower;
     let panel = |lanes: usize| 34.0 + LANE * lanes as f64;

@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use maud::{Markup, html};
 
-use crate::report::text::number::{clean, digits_to_tell, grouped, optional, percent, seconds, significant, vector};
+use crate::report::text::number::{
+    at_most_percent, clean, digits_to_tell, enclosing, grouped, optional, outward, percent, seconds, significant,
+    vector,
+};
 use crate::report::text::words::{mean_in_words, upper_from};
 use crate::report::{CoulombSummary, DualSummary, Energy, PrimalSummary, Report};
 
@@ -36,8 +39,9 @@ fn friction(coulomb: &CoulombSummary) -> Markup {
 
 fn energies(report: &Report, energy: &Energy) -> Markup {
     let digits = digits_to_tell(energy.lower, energy.upper).max(10);
-    let upper = format!("best admissible 𝓛(v), {}", upper_from(&energy.upper_from));
-    let interval = |[lo, hi]: [f64; 2]| format!("{} … {}", significant(lo, digits), significant(hi, digits));
+    let of_upper = format!("best admissible 𝓛(v), {}", upper_from(&energy.upper_from));
+    let [lower, upper] = enclosing([energy.lower, energy.upper], digits);
+    let interval = |ends: [f64; 2]| enclosing(ends, digits).join(" … ");
     let (work, meaning) = match energy.compliance {
         Some(_) => ("compliance", "encloses ∫F·u + ∫P·u, the work of the loads: twice the elastic energy"),
         None if energy.friction_work.is_some() => (
@@ -50,10 +54,10 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
         ),
     };
     let mut rows = vec![
-        ("lower bound", significant(energy.lower, digits), "−Π(λ_h), less what rounding can have cost"),
-        ("upper bound", significant(energy.upper, digits), upper.as_str()),
+        ("lower bound", lower, "−Π(λ_h), less what rounding can have cost"),
+        ("upper bound", upper, of_upper.as_str()),
         ("gap", significant(energy.gap, 6), "upper − lower"),
-        ("relative error bound", percent(energy.relative_error_bound), "√(gap / 𝒮(λ_h)), in the energy norm"),
+        ("relative error bound", at_most_percent(energy.relative_error_bound), "√(gap / 𝒮(λ_h)), in the energy norm"),
         (
             "mid-field error bound",
             percent(energy.mid_error_bound),
@@ -80,8 +84,8 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
     }
     let across = report.data_range.as_ref().map(|range| {
         let digits = range.upper.map_or(6, |upper| digits_to_tell(range.lower, upper).max(6));
-        let upper = range.upper.map_or("∞".to_string(), |upper| significant(upper, digits));
-        format!("{} … {upper}", significant(range.lower, digits))
+        let upper = range.upper.map_or("∞".to_string(), |upper| outward(upper, digits, true));
+        format!("{} … {upper}", outward(range.lower, digits, false))
     });
     let primal_meaning = |primal: &PrimalSummary| match (primal.admissible, primal.is_of_quadrature()) {
         (false, _) => "not admissible everywhere: no bound",
@@ -280,10 +284,9 @@ fn history(report: &Report) -> Markup {
                 th.n { "upper bound" } th.n { "error at most" } th.n { "rate" } th.n { "seconds" }
                 th.n { "seconds since start" } } }
                 tbody { @for (i, row) in report.history.iter().enumerate() { tr {
-                    @let digits = digits_to_tell(row.lower, row.upper);
+                    @let [lower, upper] = enclosing([row.lower, row.upper], digits_to_tell(row.lower, row.upper));
                     td.n { (i + 1) } td.n { (grouped(row.triangles)) } td.n { (grouped(row.unknowns)) }
-                    td.n { (significant(row.lower, digits)) }
-                    td.n { (significant(row.upper, digits)) } td.n { (percent(row.relative_error_bound)) }
+                    td.n { (lower) } td.n { (upper) } td.n { (at_most_percent(row.relative_error_bound)) }
                     td.n { (optional(row.rate, 2)) } td.n { (significant(row.step_seconds, 3)) }
                     td.n { (significant(row.seconds, 3)) }
                 } } }

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use crate::report::figure::bracket::bracket;
-use crate::report::text::number::{clean, digits_to_tell, grouped, percent, significant, vector};
+use crate::report::text::number::{at_most_percent, clean, digits_to_tell, enclosing, grouped, percent, vector};
 use crate::report::text::words::{accuracy, failing, headline, status_symbol, status_word, upper_from, worth_a_look};
 use crate::report::{Dossier, Report, Status};
 
@@ -65,10 +65,10 @@ fn bracket_card(report: &Report) -> Markup {
             h2 { "Where the exact energy lies" }
             (PreEscaped(bracket(report)))
             @if let Some(energy) = &report.energy {
-                @let digits = digits_to_tell(energy.lower, energy.upper);
+                @let [lower, upper] = enclosing([energy.lower, energy.upper], digits_to_tell(energy.lower, energy.upper));
                 p {
-                    "Stresses in equilibrium give " b { (significant(energy.lower, digits)) } ", the best admissible displacement ("
-                    (upper_from(&energy.upper_from)) ") gives " b { (significant(energy.upper, digits)) }
+                    "Stresses in equilibrium give " b { (lower) } ", the best admissible displacement ("
+                    (upper_from(&energy.upper_from)) ") gives " b { (upper) }
                     ". "
                     @if energy.lower <= energy.upper { "The exact energy is between them." }
                     @else { b { "That is the wrong way round, which cannot be: one of the models is wrong." } }
@@ -130,7 +130,7 @@ fn distance_of_field(report: &Report) -> Markup {
                 } @else { p { "No bound was obtained for " (clean(&primal.name)) "." } }
             }
             @if let Some(energy) = report.energy.as_ref().filter(|e| e.relative_error_bound.is_finite()) {
-                p { "Of the stresses that this program computed for comparison: at most " b { (percent(energy.relative_error_bound)) } "." }
+                p { "Of the stresses that this program computed for comparison: at most " b { (at_most_percent(energy.relative_error_bound)) } "." }
             }
         }
     }
@@ -144,7 +144,7 @@ fn distance(report: &Report) -> Markup {
         section.card {
             h2 { "How far can each be from the truth?" }
             @if let Some(energy) = report.energy.as_ref().filter(|e| e.relative_error_bound.is_finite()) {
-                div.big { "≤ " (percent(energy.relative_error_bound)) }
+                div.big { "≤ " (at_most_percent(energy.relative_error_bound)) }
             }
             p {
                 (accuracy(report))

@@ -6,7 +6,7 @@ use maud::{Markup, PreEscaped, html};
 use super::style::CSS;
 use crate::report::document::document;
 use crate::report::figure::bracket::bracket;
-use crate::report::text::number::{clean, digits_to_tell, grouped, outward, percent, significant};
+use crate::report::text::number::{at_most_percent, clean, digits_to_tell, enclosing, grouped, percent, significant};
 use crate::report::text::words::upper_from;
 use crate::report::{DualSummary, Energy, GuaranteeLevel, Report};
 
@@ -41,8 +41,8 @@ pub fn why(report: &Report) -> Option<String> {
 
 /// The two ends, rounded outwards so that what is printed still encloses what is known.
 fn ends(energy: &Energy) -> [String; 2] {
-    let digits = digits_to_tell(energy.lower, energy.upper).max(6) + 2;
-    [outward(energy.lower, digits, false), outward(energy.upper, digits, true)]
+    let [lower, upper] = [energy.lower, energy.upper];
+    enclosing([lower, upper], digits_to_tell(lower, upper).max(6) + 2)
 }
 
 fn claim(report: &Report, energy: &Energy) -> Markup {
@@ -58,7 +58,7 @@ fn claim(report: &Report, energy: &Energy) -> Markup {
                 div.word { (word) }
                 p { "The exact energy 𝓛(u) of this scene is no less than " b { (lower) } " and no more than " b { (upper) } "." }
                 p {
-                    "The computed stress is therefore within " b { (percent(energy.relative_error_bound)) } " of the exact one, in the norm of the elastic energy, "
+                    "The computed stress is therefore within " b { (at_most_percent(energy.relative_error_bound)) } " of the exact one, in the norm of the elastic energy, "
                     "without an estimate, a constant that nobody knows, or a finer mesh."
                 }
                 p { "On whose word: " (clean(&energy.guarantee.words)) "." }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::number::{clean, digits_to_tell, optional, percent, significant, vector};
+use super::number::{clean, digits_to_tell, enclosing, optional, percent, significant, vector};
 use super::words::{accuracy, basis_word, failing, headline, mean_in_words, status_symbol, upper_from, worth_a_look};
 use crate::cause::told;
 use crate::report::{Report, Status};
@@ -46,12 +46,10 @@ pub fn summary(report: &Report) -> String {
 
 fn bracket(text: &mut String, report: &Report) {
     let Some(energy) = &report.energy else { return };
-    let digits = digits_to_tell(energy.lower, energy.upper);
+    let [lower, upper] = enclosing([energy.lower, energy.upper], digits_to_tell(energy.lower, energy.upper));
     let _ = writeln!(
         text,
-        "Exact energy 𝓛(u) between **{}** and **{}** (upper bound: {}). {}\n",
-        significant(energy.lower, digits),
-        significant(energy.upper, digits),
+        "Exact energy 𝓛(u) between **{lower}** and **{upper}** (upper bound: {}). {}\n",
         cell(&upper_from(&energy.upper_from)),
         accuracy(report)
     );

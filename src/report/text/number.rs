@@ -43,6 +43,11 @@ pub(crate) fn outward(x: f64, digits: usize, upwards: bool) -> String {
     if outer.abs() < 10f64.powi(exponent) { significant(outer, digits + 1) } else { significant(outer, digits) }
 }
 
+/// The ends of an interval with `digits` significant digits, both [`outward`].
+pub(crate) fn enclosing([lower, upper]: [f64; 2], digits: usize) -> [String; 2] {
+    [outward(lower, digits, false), outward(upper, digits, true)]
+}
+
 /// A number that may be missing.
 pub(crate) fn optional(x: Option<f64>, digits: usize) -> String {
     x.map_or_else(|| "–".to_string(), |x| significant(x, digits))
@@ -121,6 +126,8 @@ mod tests {
     fn numbers_read_well() {
         assert_eq!(significant(-1.796419, 5), "−1.7964");
         assert_eq!(significant(9.9996, 4), "10");
+        assert_eq!((percent(0.201006), at_most_percent(0.201006)), ("20.1 %".to_string(), "20.2 %".to_string()));
+        assert_eq!(enclosing([-1.403816, -1.400852], 5), ["−1.4039", "−1.4008"]);
         assert_eq!(significant(1.0e-9, 3), "1×10⁻⁹");
         assert_eq!(significant(2.1e11, 3), "2.1×10¹¹");
         assert_eq!(significant(f64::NAN, 3), "–");

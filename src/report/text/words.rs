@@ -126,10 +126,10 @@ pub(crate) fn upper_from(name: &str) -> String {
 
 /// Accuracy of the stresses that follows from the bracket, in one sentence.
 pub(crate) fn accuracy(report: &Report) -> String {
-    use super::number::percent;
+    use super::number::at_most_percent;
     match &report.energy {
         Some(energy) if energy.relative_error_bound.is_finite() => {
-            let bound = percent(energy.relative_error_bound);
+            let bound = at_most_percent(energy.relative_error_bound);
             let differs =
                 format!("The exact stress differs from the computed one by at most {bound} in the energy norm");
             if energy.guarantee.level == GuaranteeLevel::Proved {

@@ -2,7 +2,7 @@
 
 use super::{Coulomb, End, From, Start, in_words};
 use crate::compare::ContactSummary;
-use crate::report::text::number::{digits_to_tell, percent, significant};
+use crate::report::text::number::{at_most_percent, digits_to_tell, percent, significant};
 use crate::report::{CoulombOutcome, CoulombStart, CoulombSummary, Energy};
 use crate::scene::counted;
 
@@ -55,7 +55,7 @@ impl Coulomb {
         let error = energy.map_or(String::new(), |energy| {
             format!(
                 ", and the stresses are within {} of its exact solution, guaranteed",
-                percent(energy.relative_error_bound)
+                at_most_percent(energy.relative_error_bound)
             )
         });
         let worst = self.distances.iter().flatten().max_by(|a, b| a.relative.total_cmp(&b.relative));

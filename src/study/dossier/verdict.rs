@@ -2,7 +2,7 @@
 
 use super::{Findings, in_numbers};
 use crate::cause::Cause;
-use crate::report::text::number::{at_most_percent, digits_to_tell, outward, percent};
+use crate::report::text::number::{at_most_percent, digits_to_tell, enclosing, percent};
 use crate::report::{Energy, Status};
 use crate::scene::capital;
 use crate::study::coulomb::Coulomb;
@@ -20,15 +20,14 @@ pub(in crate::study) fn verdict(
     let failed = findings.comparison.checks.iter().filter(|c| !c.passed && c.decides());
     let failed: Vec<&str> = failed.map(|c| c.name.as_str()).collect();
     let bound = energy.map_or(String::new(), |e| {
+        let [lower, upper] = enclosing([e.lower, e.upper], digits_to_tell(e.lower, e.upper));
         let what = if e.guaranteed { "guaranteed" } else { "indicated" };
         let (whose, of) = match of_which(findings) {
             ("", of) if !e.guaranteed => ("for the scene as this mesh represents it, ", of),
             which => which,
         };
         let sentence = format!(
-            "{whose}the exact energy{of} lies between {} and {}; the {what} relative energy-norm error is at most {}.",
-            outward(e.lower, digits_to_tell(e.lower, e.upper), false),
-            outward(e.upper, digits_to_tell(e.lower, e.upper), true),
+            "{whose}the exact energy{of} lies between {lower} and {upper}; the {what} relative energy-norm error is at most {}.",
             at_most_percent(e.relative_error_bound)
         );
         format!(" {}", capital(&sentence))
@@ -100,12 +99,11 @@ fn of_field(findings: &Findings<'_>, energy: Option<&Energy>) -> String {
     let of = if judged.is_admissible() { name.clone() } else { format!("the admissible field nearest to {name}") };
     let what = if energy.guaranteed { "guaranteed" } else { "indicated" };
     let upper = judged.admissible.upper();
+    let [lower, own] = enclosing([energy.lower, upper], digits_to_tell(energy.lower, upper));
     let (whose, bound) = of_which(findings);
     let sentence = format!(
-        "{whose}the {what} relative energy-norm error of {of} is at most {}: its energy{bound} is {}, and the exact one is no lower than {}.",
+        "{whose}the {what} relative energy-norm error of {of} is at most {}: its energy{bound} is {own}, and the exact one is no lower than {lower}.",
         at_most_percent(in_numbers(judged.relative_error(sharpest))),
-        outward(upper, digits_to_tell(energy.lower, upper), true),
-        outward(energy.lower, digits_to_tell(energy.lower, upper), false),
     );
     format!(" {}", capital(&sentence))
 }
