@@ -5,7 +5,6 @@ use crate::bounds::Hold;
 use crate::compare::ceiling::Allowance;
 use crate::compare::{Allowances, Basis, Check};
 use crate::problem::Scales;
-use crate::sets::DisjointSets;
 
 /// Number of nodes with a large residual that are named.
 const NAMED: usize = 3;
@@ -110,14 +109,7 @@ impl Solution<'_> {
     }
 
     fn reactions_check(&self, scales: &Scales) -> Check {
-        let mesh = &self.problem.mesh;
-        let vertices = mesh.points.len();
-        let mut sets = DisjointSets::new(vertices + mesh.edges.len());
-        for (corners, edges) in mesh.triangles.iter().zip(&mesh.triangle_edges) {
-            corners[1..].iter().for_each(|v| sets.join(corners[0], *v));
-            edges.iter().for_each(|e| sets.join(corners[0], vertices + e));
-        }
-        let (label, count) = sets.labels();
+        let (label, count) = self.bodies().labels();
         // What the balance of a body misses: supports, contacts and loads, which leave the residual.
         let (mut sum, mut size) = (vec![[0.0; 2]; count], vec![0.0; count]);
         for (node, rest) in self.rest.iter().enumerate() {
@@ -132,11 +124,7 @@ impl Solution<'_> {
             if size > 0.0 { missing(part) / size } else { 0.0 }
         };
         // Forces of closed coefficients alone leave less than those taken at nodes where the direction of contact turns.
-        let mut is_pushed = vec![false; count];
-        if self.is_pushed() {
-            let touching = |site: &Site| [Some(site.first), site.second].into_iter().flatten();
-            self.sites.list.iter().flat_map(touching).for_each(|node| is_pushed[label[node]] = true);
-        }
+        let is_pushed = self.pushed_among(&label, count);
         let worst = (0..count).filter(|part| !is_pushed[*part]);
         let worst = worst.max_by(|a, b| relative(*a).total_cmp(&relative(*b)));
         let value = worst.map_or(self.residual(), relative);

@@ -96,16 +96,16 @@ impl Functional {
                 let own = Functional::empty(problem, Kind::StressIntensity);
                 Ok(Functional { local: Some(Box::new(Local::Tip(tip))), constant, ..own })
             }
-            Target::ContactForce { contact, tangential: true, window } => {
-                tangential_force(problem, *contact, |s| window.map_or(1.0, |window| trapezoid(window, s)))
-            }
-            Target::ContactForce { contact, tangential: false, window } => {
+            Target::ContactForce { contact, tangential, window } => {
                 if let (Some(window), Some([from, to])) = (window, extent(problem, *contact))
                     && (window[3] <= from || to <= window[0])
                 {
                     return Err(NotBounded::WindowOutside { window: [window[0], window[3]], contact: [from, to] });
                 }
                 let weight = |s: f64| window.map_or(1.0, |window| trapezoid(window, s));
+                if *tangential {
+                    return tangential_force(problem, *contact, weight);
+                }
                 // Pressure is positive.
                 Ok(on_contact(problem, *contact, Kind::Force, |_, pair| pair.arc.map(|s| -weight(s)).to_vec()))
             }
