@@ -86,13 +86,14 @@ impl Bracket {
         keep: bool,
     ) -> Self {
         let lower = LowerTerms::new(problem, &dual.stress, &dual.moments, Counted::ALL);
-        let (floor, (wider, stored)) = (lower.complementary.lower(), yielded(problem, dual));
-        let ground = match &wider {
-            Cow::Borrowed(_) => ground,
-            Cow::Owned(wider) => Groundwork::new(wider, dual.moments.iter().map(|moments| moments.len() - 1)),
-        };
-        let floor = floor - problem.scene.thickness * stored;
-        let made = ground.and_then(|g| admissible_on(g, &wider, dual, floor, start, keep));
+        let floor = lower.complementary.lower();
+        let made = yielded(problem, dual).and_then(|(wider, stored)| {
+            let ground = match &wider {
+                Cow::Borrowed(_) => ground?,
+                Cow::Owned(wider) => Groundwork::new(wider, dual.moments.iter().map(|moments| moments.len() - 1))?,
+            };
+            admissible_on(ground, &wider, dual, floor - problem.scene.thickness * stored, start, keep)
+        });
         let free = made.map(|(v, prepared)| UpperBound { prepared, ..UpperBound::new(problem, dual, v) });
         Self::of_terms(problem, dual, lower, free)
     }

@@ -30,7 +30,9 @@ impl Outline {
         let size = (0..nodes.len()).flat_map(|i| (0..i).map(move |j| (i, j))).fold(0.0, |m, (i, j)| apart(i, j).max(m));
         let corners = hull(nodes, size)?;
         let count = corners.len();
-        let area = 0.5 * (0..count).map(|k| cross(nodes[corners[k]], nodes[corners[(k + 1) % count]])).sum::<f64>();
+        // From a corner, not from the origin, which may be far away.
+        let from = nodes[corners[0]];
+        let area = 0.5 * corners.windows(2).map(|c| turn(from, nodes[c[0]], nodes[c[1]])).sum::<f64>();
         let mut free: Vec<usize> = (0..nodes.len()).filter(|n| !corners.contains(n)).collect();
         let mut sides = Vec::new();
         for k in 0..count {
@@ -172,6 +174,13 @@ mod tests {
         assert!(weights.row(4).iter().all(|w| (w - 0.25).abs() < 1e-12));
         assert_eq!(Outline::of(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]), None);
         assert_eq!(Outline::of(&[[0.0; 2]; 4]), None);
+    }
+
+    #[test]
+    fn the_area_does_not_depend_on_the_place() {
+        let quad = [[0.0, 0.0], [0.25, 0.0], [0.25, 0.5], [0.0, 0.25]];
+        let far = quad.map(|[x, y]| [x + 1e6, y - 3e6]);
+        assert_eq!(Outline::of(&far).expect("a quadrilateral").area, 0.09375);
     }
 
     #[test]

@@ -59,6 +59,44 @@ fn a_column_that_closes_its_gap_and_one_that_does_not_are_exact() {
     }
 }
 
+/// A block squeezed evenly by an obstacle that overlaps it and yields, at whose ends clamps move as the block does: the supports press
+/// there, soft or stiff, and at any angle. On the body of ν = 0 the strain e along the push is k (g − e L)/E.
+#[test]
+fn an_elastic_contact_between_clamps_is_pressed_there_and_exact() {
+    let (young, overlap, length) = (2.0, 0.02, 1.5);
+    for (angle, k) in [(0.0, 5.0), (0.0, 0.01), (0.7, 5.0), (2.0, 1e5)] {
+        let strain = k * overlap / (young + k * length);
+        // u = −e x along the push, turned.
+        let [c, s] = [f64::cos(angle), f64::sin(angle)];
+        let gradient = [[c * c, c * s], [s * c, s * s]].map(|row| row.map(|x| -strain * x));
+        let clamp = |on: &str| {
+            format!("[[supports]]\non = \"{on}\"\ntype = \"clamped\"\ndisplacement = {{ gradient = {gradient:?} }}")
+        };
+        let toml = Toml::default()
+            .size(0.6)
+            .polygon(
+                "a",
+                &[[0.0, 0.0], [length, 0.0], [length, 1.0], [0.0, 1.0]].map(|p| turned(angle, p)),
+                ["foot", "east", "top", "west"],
+            )
+            .material("a", young, 0.0)
+            .table(&clamp("foot"))
+            .table(&clamp("top"))
+            .table(&clamp("west"));
+        let line = [[length - overlap, 0.0], [length - overlap, 1.0]].map(|p| turned(angle, p));
+        let toml =
+            toml.table(&format!("[[contacts]]\non = \"east\"\nobstacle = {{ line = {line:?} }}\nstiffness = {k:?}"));
+        // What the contact stores, and the block; nothing loads it.
+        let yielded = overlap - strain * length;
+        let energy = 0.5 * young * strain * strain * length + 0.5 * k * yielded * yielded;
+        for degree in [1, 2] {
+            let [lower, upper] = ends(&solved(problem(&toml.text()), degree));
+            assert!(lower <= energy + 1e-12 && energy <= upper + 1e-12, "{angle} {k}: {lower} {energy} {upper}");
+            assert!(upper - lower < 1e-8 * energy, "{angle} {k}: {lower} {energy} {upper}");
+        }
+    }
+}
+
 /// A block on another one, with a gap that opens along them and a force that may lift an end.
 fn blocks(random: &mut Random, law: &str) -> Toml {
     let kinematics = random.pick(&["plane-strain", "plane-stress"]);

@@ -57,6 +57,19 @@ pub enum NoUpperBound {
         /// How deep.
         by: f64,
     },
+    /// A contact asks for an interference where both its sides are one point.
+    #[error(
+        "a contact asks for an interference of {by:.3e} at ({x}, {y}), where its sides are one point, the tip of a crack or the end of \
+         a bond, which no displacement of finite energy can give"
+    )]
+    PressedInside {
+        /// Where.
+        x: f64,
+        /// Where.
+        y: f64,
+        /// How much.
+        by: f64,
+    },
 }
 
 /// Builds the displacement; `floor`, a lower bound of its energy, says when relaxing it further is not worth the time,

@@ -155,13 +155,7 @@ impl Solution<'_> {
             rubbing * site.slip(prescribed) - pressing * (site.excess(prescribed) + site.gap)
         };
         let supports = held - sites.map(of_contacts).sum::<f64>();
-        // What contact does on a penetration has a check of its own.
-        let weak: Vec<bool> = (0..self.problem.interfaces.len()).map(|i| self.holds_weakly(i).is_some()).collect();
-        let distance =
-            |(site, excess): (&Site, &f64)| site.gap + if weak[site.interface] { *excess } else { excess.max(0.0) };
-        let distances = self.sites.list.iter().zip(&self.excess).map(distance);
-        let gaps: f64 =
-            distances.zip(&self.pressing).map(|(distance, force)| force * distance).sum::<f64>() + self.on_gaps;
+        let gaps = self.work_on_gaps();
         let beside: f64 = self.beside.iter().enumerate().map(|(n, f)| dot(*f, self.candidate.value(n))).sum();
         let rubbed: f64 = self.rubbing.iter().zip(&self.slip).map(|(force, slip)| force * slip).sum();
         let (left, right) = (2.0 * self.strain, work + supports - gaps + beside + rubbed);
@@ -185,6 +179,31 @@ impl Solution<'_> {
                 },
             )
         })
+    }
+
+    /// Work that contact takes from the sides on the way to where it is closed: Σ force · distance. Where a force acts although the sides
+    /// are apart, that is the gap and not what the sides have moved. What contact does on a penetration has a check of its own.
+    fn work_on_gaps(&self) -> f64 {
+        let weak: Vec<bool> = (0..self.problem.interfaces.len()).map(|i| self.holds_weakly(i).is_some()).collect();
+        let strong = |site: usize| !weak[self.sites.list[site].interface];
+        let each = self.sites.list.iter().zip(self.pressing.iter().zip(&self.excess));
+        let closed: f64 = each.map(|(site, (force, excess))| force * (site.gap + excess)).sum();
+        let apart = |forces: &[f64], distances: &[f64]| {
+            let own = (0..forces.len()).filter(|s| strong(*s) && distances[*s] < 0.0 && !self.is_support(*s));
+            own.map(|s| forces[s] * distances[s]).sum::<f64>()
+        };
+        let at_nodes = apart(&self.pressing, &self.excess);
+        let (forces, distances) = self.sites.in_coefficients(&self.pressing, &self.excess);
+        let in_coefficients = apart(&forces, &distances);
+        let least = if at_nodes.abs() <= in_coefficients.abs() { at_nodes } else { in_coefficients };
+        // Forces that push at closed coefficients alone do no work on a distance, whichever places share them here.
+        let apart = if self.is_pushed() { 0.0 } else { least };
+        closed - apart + self.on_gaps
+    }
+
+    /// True where supports take what contact does at a place.
+    fn is_support(&self, site: usize) -> bool {
+        self.pressing[site] == 0.0 && self.sites.is_held(site)
     }
 
     /// Checks of contact `interface` in the mean, with a remark on its nodes.
@@ -256,8 +275,9 @@ impl Solution<'_> {
         let share = |force: f64| if total > 0.0 { force / total } else { force };
         let rounding = self.of_displacements(1.0);
         let open = -2.0 * (SOLVER + rounding.digits.min(rounding.ceiling)) * self.reference;
-        let (forces, distances) = self.sites.in_coefficients(&self.pressing, &self.excess);
-        let own = || (0..forces.len()).filter(|s| self.sites.list[*s].interface == interface);
+        let (mut forces, distances) = self.sites.in_coefficients(&self.pressing, &self.excess);
+        let own = || (0..self.pressing.len()).filter(|s| self.sites.list[*s].interface == interface);
+        own().filter(|s| self.is_support(*s)).for_each(|s| forces[s] = 0.0);
         let sum = |force: &dyn Fn(usize) -> f64| {
             let worst = own().max_by(|a, b| force(*a).total_cmp(&force(*b))).filter(|s| force(*s) > 0.0);
             let place = worst.map_or(String::new(), |s| format!(" (most at {})", self.named(self.sites.list[s].first)));

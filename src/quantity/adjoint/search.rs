@@ -248,7 +248,9 @@ impl Search<'_, '_> {
                 "the contact ends inside a body at ({x}, {y}), and what it carries up to there is no bounded functional; ask for a \
                  window that is zero there"
             ),
-            NoUpperBound::ForcedPenetration { x, y, .. } | NoUpperBound::SupportsDisagree { x, y } => format!(
+            NoUpperBound::ForcedPenetration { x, y, .. }
+            | NoUpperBound::PressedInside { x, y, .. }
+            | NoUpperBound::SupportsDisagree { x, y } => format!(
                 "how contact and support share the force at ({x}, {y}), where they meet, is no bounded functional"
             ),
         })?;

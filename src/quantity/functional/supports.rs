@@ -63,9 +63,9 @@ pub fn on_support(
         if own.contains(&e) { motion(mesh.points[v]).map(|w| -w) } else { [0.0; 2] }
     };
     let holds = holds_at(problem, prescribed).map_err(|error| match error {
-        NoUpperBound::SupportsDisagree { x, y } | NoUpperBound::ForcedPenetration { x, y, .. } => {
-            NotBounded::Shared { x, y }
-        }
+        NoUpperBound::SupportsDisagree { x, y }
+        | NoUpperBound::ForcedPenetration { x, y, .. }
+        | NoUpperBound::PressedInside { x, y, .. } => NotBounded::Shared { x, y },
     })?;
     let mut vertex = vec![[0.0; 2]; mesh.points.len()];
     for v in own.iter().flat_map(|&e| mesh.edges[e].vertices) {

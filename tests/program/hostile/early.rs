@@ -106,6 +106,29 @@ fn supports_that_contradict_each_other_are_bad_input() {
     assert_eq!(room.run(&["solve", "scene.toml"]).status.code(), Some(0));
 }
 
+/// The sides of a contact that come together in one point, at the tip of a crack or where a rigid bond begins, leave no room there.
+#[test]
+fn an_interference_up_to_where_bodies_are_one_is_bad_input() {
+    let crack = case("open_crack");
+    let gap = |g: &str| crack.replacen("[[contacts]]", &format!("[[contacts]]\ngap = {g}"), 1);
+    let place = Place::with(&gap("-0.01"));
+    for command in [&["solve", "scene.toml"][..], &["verify", "scene.toml"]] {
+        place.refuses(command, &["interference of 1.000e-2", "the tip of a crack", "leave out"]);
+    }
+    // An elastic contact yields.
+    for possible in ["-0.01\nstiffness = 50.0", "-0.01\nstiffness = 0.5"] {
+        let place = Place::with(&gap(possible));
+        let output = place.run(&["solve", "scene.toml"]);
+        assert_eq!(output.status.code(), Some(0), "{possible}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    let bonded = case("bonded")
+        .replace("\"right_face\", \"right_face\", \"right_face\"", "\"right_face\", \"apart\", \"apart\"");
+    let bonded = bonded.replace("\"left_face\", \"left_face\"", "\"left_apart\", \"left_face\"");
+    let bonded = bonded.replace("[1.04, 0.7], [0.98, 0.4]", "[1.0, 0.5], [0.96, 0.3]");
+    let place = Place::with(&format!("{bonded}\n[[contacts]]\nbetween = [\"left_apart\", \"apart\"]\ngap = -0.001\n"));
+    place.refuses(&["solve", "scene.toml"], &["(1, 0.5)", "the end of a bond"]);
+}
+
 #[test]
 fn rows_of_a_gap_that_no_mesh_can_tell_apart_are_refused() {
     let scene = case("two_blocks");

@@ -1,5 +1,7 @@
 //! Equal input gives equal bits, and a baseline notices when it does not.
 
+use std::path::Path;
+
 use serde_json::Value;
 
 use super::run::{Run, case, with_reference};
@@ -73,21 +75,41 @@ fn fields_of_a_report_can_be_handed_in_again() {
     for scene in ["two_blocks", "stack", "inclined"] {
         let verified = Run::new("verify", &case(scene), &[]);
         assert_eq!(verified.code, Some(0), "{}{}", verified.stdout, verified.stderr);
-        let fields = verified.folder.path().join("out/fields.vtu");
         let shown = Run::new("solve", &case(scene), &[]).folder;
         let shown = shown.path().join("out/fields.vtu");
         let refused = Run::new("certify", &case(scene), &["--displacement", shown.to_str().expect("a plain path")]);
         assert_eq!(refused.code, Some(2), "{}", refused.stderr);
         let said = refused.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(said.contains("keeps no linear or quadratic displacement"), "{said}");
-        for (model, name) in ["displacement_FEniCSx_P1", "displacement_FEniCSx_P2"].into_iter().enumerate() {
-            let field = fields.to_str().expect("a plain path");
-            let certified =
-                Run::new("certify", &case(scene), &["--displacement", field, "--field", name, "--solution"]);
-            assert_eq!(certified.code, Some(0), "{scene} {name}: {}{}", certified.stdout, certified.stderr);
+        for model in 0..2 {
+            let certified = taken_back(&verified, &case(scene), model);
             let energy = |run: &Run, model: usize| run.report().number(&format!("/primal/{model}/energy"));
             let [before, after] = [energy(&verified, model), energy(&certified, 0)];
-            assert!((before - after).abs() < 1e-12 * before.abs(), "{scene} {name}: {before} {after}");
+            assert!((before - after).abs() < 1e-12 * before.abs(), "{scene} P{}: {before} {after}", model + 1);
         }
     }
+}
+
+/// Quadratics that close a contact beside a clamp, which takes a part of their force; friction at a vertex of four contacts.
+#[test]
+fn fields_whose_contact_forces_others_share_can_be_handed_in_again() {
+    if !with_reference() {
+        return;
+    }
+    for (name, models) in [("obstacles_beside_a_clamp", 0..2), ("dragged_off_by_friction", 0..1)] {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/scenes/{name}.toml"));
+        let verified = Run::new("verify", &scene, &[]);
+        assert_eq!(verified.code, Some(0), "{}{}", verified.stdout, verified.stderr);
+        models.for_each(|model| drop(taken_back(&verified, &scene, model)));
+    }
+}
+
+/// The run that takes the field of degree `model` + 1 in a report for the solution that it is.
+fn taken_back(verified: &Run, scene: &Path, model: usize) -> Run {
+    let (fields, name) =
+        (verified.folder.path().join("out/fields.vtu"), format!("displacement_FEniCSx_P{}", model + 1));
+    let field = fields.to_str().expect("a plain path");
+    let certified = Run::new("certify", scene, &["--displacement", field, "--field", &name, "--solution"]);
+    assert_eq!(certified.code, Some(0), "{} {name}: {}{}", scene.display(), certified.stdout, certified.stderr);
+    certified
 }

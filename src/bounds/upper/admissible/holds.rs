@@ -181,25 +181,41 @@ pub fn supports_agree(problem: &Problem) -> Result<(), NoUpperBound> {
     // Nothing is too deep for an elastic contact.
     let problem = &*problem.softened();
     let holds = holds(problem)?.vertices;
-    let held = |v: usize, n: [f64; 2]| {
-        let [own, left] = [holds[v].impose([0.0; 2]), holds[v].project(n)];
-        (left[0].hypot(left[1]) <= PARALLEL).then_some(own)
-    };
     for pair in problem.pairs() {
         for end in 0..2 {
-            let n = pair.direction.ends[end];
-            let first = held(pair.first[end], n);
-            let second = pair.second.map_or(Some([0.0; 2]), |s| held(s[end], n));
-            let Some((first, second)) = first.zip(second) else { continue };
-            let by = (first[0] - second[0]) * n[0] + (first[1] - second[1]) * n[1] - pair.gap[end];
-            let size = first.iter().chain(&second).fold(0.0_f64, |m, u| m.max(u.abs()));
+            let Some((by, size)) = forced(pair, end, &holds) else { continue };
             if by > jump_rounding(problem, pair, size) {
                 let [x, y] = problem.scene.as_written(problem.mesh.points[pair.first[end]]);
-                return Err(NoUpperBound::ForcedPenetration { x, y, by });
+                return Err(match is_one(pair, end) {
+                    true => NoUpperBound::PressedInside { x, y, by },
+                    false => NoUpperBound::ForcedPenetration { x, y, by },
+                });
             }
         }
     }
     Ok(())
+}
+
+/// The penetration at one end of a pair, and the size of the displacements that it comes from, where supports leave it no choice, or the
+/// body that the contact ends in.
+pub fn forced(pair: &ContactPair, end: usize, holds: &[Hold]) -> Option<(f64, f64)> {
+    if is_one(pair, end) {
+        return Some((-pair.gap[end], 0.0));
+    }
+    let n = pair.direction.ends[end];
+    let held = |v: usize| {
+        let [own, left] = [holds[v].impose([0.0; 2]), holds[v].project(n)];
+        (left[0].hypot(left[1]) <= PARALLEL).then_some(own)
+    };
+    let first = held(pair.first[end])?;
+    let second = pair.second.map_or(Some([0.0; 2]), |s| held(s[end]))?;
+    let by = (first[0] - second[0]) * n[0] + (first[1] - second[1]) * n[1] - pair.gap[end];
+    Some((by, first.iter().chain(&second).fold(0.0_f64, |m, u| m.max(u.abs()))))
+}
+
+/// True where both sides of a contact are one point: at the tip of a crack, or where a rigid bond begins.
+fn is_one(pair: &ContactPair, end: usize) -> bool {
+    pair.second.is_some_and(|second| second[end] == pair.first[end])
 }
 
 /// Penetrations smaller than this, relative to the displacements they come from, are rounding.

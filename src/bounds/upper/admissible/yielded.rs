@@ -1,23 +1,30 @@
 //! Stiff elastic contact on the way to an admissible displacement: as a contact whose gap is wider by what it yields.
 //!
 //! φ(j) = ½ k (j − g)₊² is the least ½ k s² of all s ≥ 0 with j ≤ g + s. Any s gives an upper bound, and that of the dual solution,
-//! −t/k, a sharp one where the contact is stiff beside its bodies, whose displacement no spring could be fitted to. Where it is soft a
-//! small error of t is a large one of s, and springs take its place ([`crate::problem::Problem::softened`]).
+//! −t/k, a sharp one where the contact is stiff beside its bodies, whose displacement no spring could be fitted to. At a vertex that
+//! supports press further than that, it yields as far as they press. Where it is soft a small error of t is a large one of s, and springs
+//! take its place ([`crate::problem::Problem::softened`]).
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 
+use super::holds::{Hold, forced, holds, jump_rounding};
 use crate::bounds::springs::spring_tractions;
+use crate::bounds::upper::NoUpperBound;
 use crate::dual::DualSolution;
 use crate::element::polynomial::side;
 use crate::problem::{BedPair, ContactPair, EdgeWeight, Problem};
 
 /// `problem` with rigid contacts that have yielded in the place of stiff elastic ones, and the energy ½ ∫ k s² of these, per unit
 /// thickness.
-pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> (Cow<'a, Problem>, f64) {
+///
+/// # Errors
+/// [`NoUpperBound::SupportsDisagree`].
+pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> Result<(Cow<'a, Problem>, f64), NoUpperBound> {
     if !problem.has_elastic_contact() {
-        return (Cow::Borrowed(problem), 0.0);
+        return Ok((Cow::Borrowed(problem), 0.0));
     }
+    let held = holds(problem)?.vertices;
     let (mut wider, mut stored) = (problem.clone(), 0.0);
     for (index, interface) in problem.interfaces.iter().enumerate() {
         if !interface.pairs.iter().any(|pair| is_stiff(problem, pair)) {
@@ -31,15 +38,29 @@ pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> (Cow<'a, Proble
             }
         }
         let mean = |v: usize| at.get(&v).map_or(0.0, |all| all.iter().sum::<f64>() / all.len() as f64);
+        let least = pressed(problem, &interface.pairs, &held);
         for pair in &mut wider.interfaces[index].pairs {
             let Some(k) = pair.stiffness.take() else { continue };
-            let s = pair.first.map(mean);
+            let s = pair.first.map(|v| mean(v).max(least.get(&v).copied().unwrap_or(0.0)));
             pair.gap = [pair.gap[0] + s[0], pair.gap[1] + s[1]];
             let weight = EdgeWeight::of_pair(problem.section(), &problem.mesh, pair);
             stored += 0.5 * k * pair.length * side::integral(&s, &weight.times(&s));
         }
     }
-    (Cow::Owned(wider), stored)
+    Ok((Cow::Owned(wider), stored))
+}
+
+/// What the contact yields at least, by vertex of its first side: how far supports press it there.
+fn pressed(problem: &Problem, pairs: &[ContactPair], held: &[Hold]) -> HashMap<usize, f64> {
+    let mut least = HashMap::<usize, f64>::new();
+    for pair in pairs {
+        for (end, v) in pair.first.into_iter().enumerate() {
+            let Some((by, size)) = forced(pair, end, held) else { continue };
+            let at = least.entry(v).or_insert(0.0);
+            *at = at.max(by + jump_rounding(problem, pair, size));
+        }
+    }
+    least
 }
 
 /// True if an elastic contact is stiffer than the bodies it touches, on the scale of its edge.
