@@ -31,6 +31,10 @@ pub enum Kind {
     Reactions,
     /// The bracket or the distance of the stresses.
     Bound,
+    /// A field that is the solution of too coarse a mesh.
+    Coarse,
+    /// Work on prescribed displacements and gaps.
+    Work,
     /// A quantity or a tolerance.
     Value,
 }
@@ -245,6 +249,14 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
         (Kind::Bound, _) => [
             "No pair of correct solutions can do this. As nothing fails that asks about the field alone, the two models were given different scenes.",
             "Compare what both were given: loads, materials, supports, gaps, thickness.",
+        ],
+        (Kind::Coarse, _) => [
+            "The mesh or the degree is too coarse for this scene: what the stresses may be wrong by is as large as they are.",
+            "Refine where the stresses change most, or take elements of a higher degree, and hand in that field.",
+        ],
+        (Kind::Work, _) => [
+            "The nodal forces balance, and their work is not that on the displacements and gaps of the scene.",
+            "Compare prescribed displacements and gaps as the model uses them with those of the scene, and the digits of the file.",
         ],
         (Kind::Value, _) => [
             "The value cannot be that of a correct solution of this scene, or it belongs to another place or direction.",

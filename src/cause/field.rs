@@ -16,6 +16,8 @@ struct Fault {
     name: String,
     /// The mistake in words, as the end of a sentence that begins with "In FIELD".
     what: String,
+    /// True if that is a sentence of its own.
+    is_sentence: bool,
     /// Further mistakes in the field, each in words.
     more: Vec<String>,
     place: Option<Place>,
@@ -71,6 +73,7 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
         kind,
         name: name.to_string(),
         what,
+        is_sentence: false,
         more: Vec::new(),
         place,
         checks: names(own),
@@ -121,9 +124,17 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
         return made(Kind::Reactions, "reported-reactions", what, place);
     }
     let first = own.first().map_or(String::new(), |check| super::told(check));
-    let asked = own.iter().all(|check| check.name.starts_with("quantity/") || check.name.starts_with("certified/"));
-    let kind = if asked { Kind::Value } else { Kind::Bound };
-    made(kind, if asked { "value" } else { "bound" }, first.trim_end_matches('.').to_string(), None)
+    let all = |is: &dyn Fn(&str) -> bool| own.iter().all(|check| is(&check.name));
+    let (kind, name) = if all(&|name| name == "solution/guaranteed-error") {
+        (Kind::Coarse, "coarse")
+    } else if all(&|name| name == "solution/energy-identity") {
+        (Kind::Work, "work")
+    } else if all(&|name| name.starts_with("quantity/") || name.starts_with("certified/")) {
+        (Kind::Value, "value")
+    } else {
+        (Kind::Bound, "bound")
+    };
+    Fault { is_sentence: true, ..made(kind, name, first.trim_end_matches('.').to_string(), None) }
 }
 
 /// Merges faults of the same name into one cause, at the place found for the field of highest degree, the last.
@@ -141,7 +152,9 @@ fn together(faults: Vec<Fault>) -> Vec<Cause> {
         fields.dedup();
         let fields = fields.join(" and ");
         let checks = group.iter().flat_map(|fault| fault.checks.clone()).collect();
-        let Some(Fault { kind, name, what, more, place, .. }) = group.into_iter().next_back() else { continue };
+        let Some(Fault { kind, name, what, is_sentence, more, place, .. }) = group.into_iter().next_back() else {
+            continue;
+        };
         let where_to = match &place {
             Some(_) if says_where(&what) => String::new(),
             Some(place) if kind.is_local() => format!(" {}", place.in_words()),
@@ -157,7 +170,10 @@ fn together(faults: Vec<Fault>) -> Vec<Cause> {
         let [suggests, remedy] = advice::of(kind, &name).map(str::to_string);
         causes.push(Cause {
             name,
-            sentence: format!("In {fields} {what}{where_to}{also}."),
+            sentence: match is_sentence {
+                true => format!("{fields}: {what}{where_to}{also}."),
+                false => format!("In {fields} {what}{where_to}{also}."),
+            },
             place,
             suggests,
             remedy,

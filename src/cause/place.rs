@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::bounds::holds;
+use crate::bounds::{bernstein, holds, of_pair};
 use crate::compare::solution::{Sites, place};
 use crate::compare::{Candidate, Judged};
-use crate::problem::Problem;
+use crate::problem::{ContactPair, Problem};
 
 /// A point of the scene and what it belongs to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -81,15 +81,33 @@ pub(super) fn deepest(
     interface: Option<usize>,
 ) -> Option<(Place, usize, f64)> {
     let sites = Sites::new(problem, candidate.degree, &holds(problem).ok()?);
-    let at_nodes: Vec<f64> = sites.list.iter().map(|site| site.excess(|node| candidate.value(node))).collect();
-    let between = sites.in_coefficients(&vec![0.0; at_nodes.len()], &at_nodes).1;
-    let is_own = |s: &usize| interface.is_none_or(|i| sites.list[*s].interface == i);
-    let largest = |of: &[f64]| (0..of.len()).filter(is_own).max_by(|a, b| of[*a].total_cmp(&of[*b]));
-    let (node, edge) = (largest(&at_nodes)?, largest(&between)?);
-    let (deepest, depth) =
-        if at_nodes[node] < AT_NODES * between[edge] { (edge, between[edge]) } else { (node, at_nodes[node]) };
-    let site = &sites.list[deepest];
-    Some((Place::of(problem, site.first, Some(site.interface)), site.interface, depth))
+    let is_own = |i: usize| interface.is_none_or(|own| own == i);
+    let value = |node: usize| candidate.value(node);
+    let at_nodes = sites.list.iter().filter(|site| is_own(site.interface)).map(|site| (site, site.excess(value)));
+    let (site, depth) = at_nodes.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    match deepest_between(problem, candidate, is_own) {
+        Some((edge, own, between)) if depth < AT_NODES * between => {
+            Some((Place::of(problem, problem.mesh.points.len() + edge, Some(own)), own, between))
+        }
+        _ => Some((Place::of(problem, site.first, Some(site.interface)), site.interface, depth)),
+    }
+}
+
+/// The edge with the largest Bernstein coefficient of the jump less the gap, its contact, and the coefficient.
+fn deepest_between(
+    problem: &Problem,
+    candidate: &Candidate,
+    is_own: impl Fn(usize) -> bool,
+) -> Option<(usize, usize, f64)> {
+    let vertices = problem.mesh.points.len();
+    let ends = |pair: &ContactPair| [Some(pair.first.to_vec()), pair.second.map(|s| s.to_vec())];
+    let largest = |pair: &ContactPair| {
+        let rows = if candidate.degree > 1 { bernstein(pair, vertices) } else { of_pair(pair, &ends(pair)) };
+        rows.iter().map(|row| row.excess_at(|node| candidate.value(node))).max_by(f64::total_cmp)
+    };
+    let interfaces = problem.interfaces.iter().enumerate().filter(|(i, _)| is_own(*i));
+    let pairs = interfaces.flat_map(|(i, interface)| interface.pairs.iter().map(move |pair| (i, pair)));
+    pairs.filter_map(|(i, pair)| Some((pair.edges[0]?, i, largest(pair)?))).max_by(|a, b| a.2.total_cmp(&b.2))
 }
 
 /// The place with the largest residual of equilibrium.

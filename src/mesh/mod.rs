@@ -65,15 +65,12 @@ pub struct Loaded {
 pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let (scene, (raw, mut notes)) = match &scene.mesh {
         MeshSource::File(_) | MeshSource::Parts(_) => {
-            let (mut raw, mut notes) = match &scene.mesh {
+            let (raw, mut notes) = match &scene.mesh {
                 MeshSource::Parts(parts) => files::parts::read(parts, &scene, limit)?,
                 MeshSource::File(path) => files::file::read(path, limit)?,
                 MeshSource::Geometry { .. } => Default::default(),
             };
-            raw.shift(scene.origin);
-            select::select(&mut raw, &scene, &mut notes)?;
-            let (scene, middle) = scene.about_middle(raw.points.iter());
-            raw.shift(middle);
+            let (scene, raw) = chosen(scene, raw, &mut notes)?;
             (scene, (raw, notes))
         }
         MeshSource::Geometry { polygons, .. } => {
@@ -91,6 +88,15 @@ pub fn load(scene: Scene, limit: Duration) -> Result<Loaded, MeshError> {
     let size = mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     notes.extend(scene.coarseness(size));
     Ok(Loaded { scene, mesh, notes, uncut })
+}
+
+/// What `scene` chooses of the mesh of a file, counted from its middle.
+fn chosen(scene: Scene, mut raw: RawMesh, notes: &mut Vec<Note>) -> Result<(Scene, RawMesh), MeshError> {
+    raw.shift(scene.origin);
+    select::select(&mut raw, &scene, notes)?;
+    let (scene, middle) = scene.about_middle(raw.points.iter());
+    raw.shift(middle);
+    Ok((scene, raw))
 }
 
 /// The mesh with the bonds of `scene` closed, whose sides match vertex for vertex.

@@ -164,3 +164,28 @@ fn groups_that_divide_the_mesh_are_bodies_and_the_others_are_listed() {
     let problem = problem(&path, |text| text + more).expect("a problem");
     assert_eq!(problem.mesh.points.len(), 8);
 }
+
+/// What a scene would be refused for is told before there is one: a flat cell, cells on each other, a group that no cell has.
+#[test]
+fn what_makes_a_mesh_unusable_is_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let nodes = "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n";
+    let of = |nodes: &str, cells: &str| {
+        format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n{cells}$EndElements\n")
+    };
+    let flat = nodes.replace("1 1 0", "0.5 0 0");
+    for (nodes, cells, told) in [
+        (nodes, "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 2 4 3\n", None),
+        (&flat, "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 2 4\n", Some("area")),
+        (nodes, "2\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 2 4\n", Some("overlap")),
+    ] {
+        let found = inventory(&written(&folder, "m.msh", &of(nodes, cells)));
+        let notes: Vec<&str> = found.notes.iter().map(|note| note.text.as_str()).collect();
+        match told {
+            None => assert!(notes.is_empty(), "{notes:?}"),
+            Some(word) => {
+                assert!(notes.iter().any(|n| n.contains("refused as it is") && n.contains(word)), "{notes:?}")
+            }
+        }
+    }
+}

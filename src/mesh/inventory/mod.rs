@@ -15,8 +15,8 @@ pub use starting::starting_scene;
 use super::files::file;
 use super::select::{named_cells, sorted};
 use super::topology::labels::{Pair, pair};
-use super::{MeshError, RawMesh};
-use crate::scene::{Note, toml_key, toml_string};
+use super::{MeshError, RawMesh, Triangulation, chosen};
+use crate::scene::{Note, Scene, toml_key, toml_string};
 
 /// Edges that a file names or numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,7 +105,7 @@ impl Inventory {
         let of_file: HashSet<Pair> = named.iter().flat_map(|c| &c.on_outline).map(|[a, b]| pair(*a, *b)).collect();
         let taken: HashSet<&str> = named.iter().map(|curve| curve.name.as_str()).collect();
         let outline = outline::pieces(&raw.points, &sides, &bodies, &of_file, &taken);
-        Ok(Inventory {
+        let mut inventory = Inventory {
             file: file.to_path_buf(),
             kinds: raw.sets.kinds.clone(),
             boundaries: named,
@@ -119,6 +119,19 @@ impl Inventory {
             groups,
             outline,
             notes,
+        };
+        inventory.notes.extend(inventory.refused(raw.clone()));
+        Ok(inventory)
+    }
+
+    /// A note where no scene can be made of the mesh as it is.
+    fn refused(&self, raw: RawMesh) -> Option<Note> {
+        let name = self.file.file_name()?.to_string_lossy();
+        let scene = Scene::parse(&starting_scene(self, &name, &name), &self.file).ok()?;
+        let made = chosen(scene, raw, &mut Vec::new()).and_then(|(scene, raw)| Triangulation::new(raw, &scene));
+        made.err().map(|error| Note {
+            weakens_guarantee: false,
+            text: format!("a scene of this mesh is refused as it is: {error}"),
         })
     }
 
