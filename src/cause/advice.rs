@@ -231,7 +231,7 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "Look at the marked node and triangle: coordinates, material, orientation, connectivity.",
         ],
         (Kind::Equilibrium, "untried") => [
-            "The displacement minimises another energy than that of the scene, or the solver stopped early. Which mistake explains it is looked for in degrees 1 and 2 on triangles alone.",
+            "The displacement minimises another energy than that of the scene, or the solver stopped early. Which mistake explains it is looked for in degrees 1 and 2 on triangles alone, and where contacts and gaps put no vertices into the mesh.",
             "Run degrees 1 and 2 of the same solver on triangles beside it (of FEniCSx: --primal-cells triangles): what is wrong with those is named.",
         ],
         (Kind::Equilibrium, _) => [

@@ -99,7 +99,8 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
     }
     if has("primal/equilibrium/").or_else(|| has("solution/residual")).is_some() {
         let what = "stresses do not balance the loads".to_string();
-        let untried = candidate.higher.is_some() && candidate.cells.is_empty();
+        let cut = candidate.numbering.as_ref().is_some_and(|numbering| numbering.uncut);
+        let untried = candidate.higher.is_some() && candidate.cells.is_empty() || cut;
         let name = if untried { "equilibrium/untried" } else { "equilibrium" };
         return made(Kind::Equilibrium, name, what, place::unbalanced(problem, judged));
     }

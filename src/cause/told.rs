@@ -116,7 +116,7 @@ fn failed(check: &Check) -> String {
         ("certified", who, _) => format!("The stresses of {who} may be wrong by {value}; {allowed} at most."),
         ("solution", "guaranteed-error", _) => {
             format!(
-                "All stresses of the field may be wrong: its guaranteed relative error is {value}, above {reference}."
+                "All stresses of the field may be wrong: its guaranteed relative error is {value}, above {allowed}."
             )
         }
         ("solution", "residual", _) => {

@@ -192,11 +192,11 @@ impl Session {
     fn refuse_ranges(&self) -> Result<(), CliError> {
         let Some(range) = self.scene.ranges.first().filter(|_| self.command == "certify") else { return Ok(()) };
         let message = format!(
-            "{}: {} is a range, and a displacement field belongs to one scene",
+            "{}: {} is a range, and a field or a value from elsewhere belongs to one scene",
             self.scene.path.display(),
             self.scene.name_of(range)
         );
-        let remedy = "write the number that the field was computed with";
+        let remedy = "write the number that it was computed with";
         Err(CliError::stopped(Exit::BadInput, message, remedy))
     }
 
@@ -241,6 +241,7 @@ impl Session {
         let problem =
             if solve.is_adaptive() { Problem::to_refine(&self.scene, load) } else { load(self.scene.clone()) }?;
         study::refuse_quantities(&problem)
+            .and_then(|()| study::refuse_wanted(&problem, &solve.wanted()))
             .map_err(|why| CliError::stopped(Exit::BadInput, format!("{}: {why}", self.scene.path.display()), ""))?;
         if solve.refine > 0 {
             let size = Size::of(&problem).refined(solve.refine);

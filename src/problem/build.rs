@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::contact::coulomb::inherit_bounds;
-use super::contact::curves::{beside_long_edges, curved, turned_by_the_mesh};
+use super::contact::curves::{self, beside_long_edges, curved, turned_by_the_mesh};
 use super::contact::friction::resist;
 use super::contact::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::contact::pair_up;
@@ -193,6 +193,7 @@ impl Problem {
         let remarks = polynomial::remarks(&problem);
         problem.notes.retain(|note| !polynomial::is_remark(note));
         problem.notes.extend(remarks);
+        curves::remark(&mut problem);
         Ok(problem)
     }
 

@@ -1,5 +1,6 @@
 //! The quantities of a scene and their intervals.
 
+use super::adaptive::Wanted;
 use super::{Certified, slopes};
 use crate::dual::{Factorised, Motion, Options};
 use crate::element::{Displacement, Elements, StressField};
@@ -60,6 +61,25 @@ pub fn refuse_quantities(problem: &Problem) -> Result<(), String> {
     Ok(())
 }
 
+/// Refuses to refine towards a quantity that has no interval on any mesh.
+///
+/// # Errors
+/// A sentence that names the quantity.
+pub fn refuse_wanted(problem: &Problem, wanted: &[Wanted]) -> Result<(), String> {
+    let named = |quantity: &&Quantity| wanted.iter().any(|wanted| wanted.name == quantity.name);
+    for quantity in problem.scene.quantities.iter().filter(named).filter(|_| goes_by_slopes(problem)) {
+        if let Ok(form) = Form::new(problem, quantity) {
+            slopes::refuse(problem, &form).map_err(|reason| format!("quantity '{}': {reason}", quantity.name))?;
+        }
+    }
+    Ok(())
+}
+
+/// True where intervals come from energies alone.
+fn goes_by_slopes(problem: &Problem) -> bool {
+    problem.has_friction() || problem.has_elastic_contact() || problem.has_polynomial_tractions()
+}
+
 /// The intervals of the quantities of a problem that was solved with `options`, all of them or those that are `wanted`.
 pub fn answers(certified: &Certified, options: &Options, wanted: impl Fn(&str) -> bool) -> Vec<Answer> {
     let quantities: Vec<&Quantity> =
@@ -75,7 +95,7 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
     let Certified { problem, statics, dual, bracket } = certified;
     let motions = statics.held_at_vertices(problem);
     let gap = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper() - bracket.lower());
-    if problem.has_friction() || problem.has_elastic_contact() || problem.has_polynomial_tractions() {
+    if goes_by_slopes(problem) {
         let of_slopes = |quantity: &&Quantity| {
             let name = quantity.name.clone();
             match Form::new(problem, quantity) {
@@ -86,7 +106,7 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
                     let interval = slopes::interval(certified, &form, options);
                     Answer { name, kind: form.kind(), sensitivity: sensitivity(&interval, gap), interval }
                 }
-                Err(error) => Answer::unknown(name, Kind::Force, &error.to_string()),
+                Err(error) => Answer::unknown(name, Kind::of(&quantity.target), &error.to_string()),
             }
         };
         return quantities.iter().map(of_slopes).collect();
@@ -116,7 +136,7 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
                 Answer { name, kind: form.kind(), interval, sensitivity }
             }
             (Ok(form), Err(reason)) => Answer::unknown(name, form.kind(), reason),
-            (Err(error), _) => Answer::unknown(name, Kind::Force, &error.to_string()),
+            (Err(error), _) => Answer::unknown(name, Kind::of(&quantity.target), &error.to_string()),
         }
     };
     quantities.iter().map(answer).collect()

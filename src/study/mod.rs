@@ -26,7 +26,7 @@ pub use adaptive::stage::certify_divided;
 pub use adaptive::warm_start::{closed_coefficients, guess_refined};
 pub use adaptive::{Adapt, Adapted, Goal, Wanted, adapt, tolerance_check};
 pub use adjoint::{Adjoint, adjoint};
-pub use answers::{Answer, answers, refuse_quantities, sharper};
+pub use answers::{Answer, answers, refuse_quantities, refuse_wanted, sharper};
 pub use certified::{Certified, StudyError, certify};
 pub use claim::{Claim, claim, claim_before_contact, diagnoses, error_check, weak_contact};
 pub use coulomb::{Coulomb, End, From, Start, solve_coulomb, solve_coulomb_to};

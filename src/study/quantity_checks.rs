@@ -144,13 +144,23 @@ pub fn quantity_checks(
     checks
 }
 
-/// One check for every value that was given.
-pub fn value_checks(answers: &[Answer], given: &[GivenValue], allow: &Allowances) -> Vec<Check> {
+/// Why an interval says nothing of the scene as it is written, where it does not.
+fn of_another_scene(certified: &Certified) -> Option<String> {
+    let note = certified.problem.notes.iter().find(|note| note.weakens_guarantee)?;
+    Some(format!("The interval is not guaranteed for the scene as it is written: {}.", note.text))
+}
+
+/// One check for every value that was given. Outside an interval for another scene than the one that is written it is not judged.
+pub fn value_checks(certified: &Certified, answers: &[Answer], given: &[GivenValue], allow: &Allowances) -> Vec<Check> {
     let check = |given: &GivenValue| {
         let name = format!("quantity/{}/given", given.name);
         match answers.iter().find(|answer| answer.name == given.name) {
             Some(answer) if answer.interval.has_an_end() => {
-                inside(&name, answer, given.value, 0.0, "no correct value lies outside")
+                let check = inside(&name, answer, given.value, 0.0, "no correct value lies outside");
+                match of_another_scene(certified).filter(|_| !check.passed) {
+                    Some(why) => Check::not_made(&name, 0.0, Basis::Guaranteed, why),
+                    None => check,
+                }
             }
             Some(answer) => {
                 let reason = answer.interval.reasons.iter().flatten().next().cloned().unwrap_or_default();
@@ -165,9 +175,12 @@ pub fn value_checks(answers: &[Answer], given: &[GivenValue], allow: &Allowances
 }
 
 /// One check for every quantity that was to be known more closely.
-pub fn wanted_checks(answers: &[Answer], wanted: &[Wanted], allow: &Allowances) -> Vec<Check> {
+pub fn wanted_checks(certified: &Certified, answers: &[Answer], wanted: &[Wanted], allow: &Allowances) -> Vec<Check> {
     let check = |wanted: &Wanted| {
         let name = format!("quantity/{}/tolerance", wanted.name);
+        if let Some(why) = of_another_scene(certified) {
+            return Check::not_made(&name, wanted.tolerance, Basis::Asked, why);
+        }
         match answers.iter().find(|answer| answer.name == wanted.name) {
             Some(Answer { interval, .. }) if interval.half_width().is_finite() => Check::at_most(
                 &name,

@@ -52,6 +52,20 @@ impl Outline {
         self.sides.iter().map(|side| side.len() - 1).min().unwrap_or(1)
     }
 
+    /// True if every side has as many nodes as the others, evenly spaced. An element of another shape may have curved sides, or traces
+    /// that are polynomials in another coordinate than the arc length.
+    pub fn is_regular(&self, nodes: &[[f64; 2]]) -> bool {
+        let even = |side: &[usize]| {
+            let (a, b) = (nodes[side[0]], nodes[side[side.len() - 1]]);
+            side.iter().enumerate().all(|(k, &n)| {
+                let part = k as f64 / (side.len() - 1) as f64;
+                let off = [0, 1].map(|c| nodes[n][c] - a[c] - part * (b[c] - a[c]));
+                off[0].hypot(off[1]) <= ON_SIDE * self.size
+            })
+        };
+        self.sides.iter().all(|side| side.len() == self.degree() + 1 && even(side))
+    }
+
     /// ∮ σn·N_i ds: the nodal forces of a constant stress (xx, yy, xy) on the nodes of each side, two rows a node.
     pub fn nodal_forces(&self, nodes: &[[f64; 2]], stress: [f64; 3]) -> Vec<f64> {
         let mut forces = vec![0.0; 2 * nodes.len()];
@@ -181,6 +195,17 @@ mod tests {
         let quad = [[0.0, 0.0], [0.25, 0.0], [0.25, 0.5], [0.0, 0.25]];
         let far = quad.map(|[x, y]| [x + 1e6, y - 3e6]);
         assert_eq!(Outline::of(&far).expect("a quadrilateral").area, 0.09375);
+    }
+
+    #[test]
+    fn sides_that_are_curved_or_unevenly_divided_are_not_regular() {
+        let straight = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]];
+        let with = |middle: [f64; 2]| {
+            let mut nodes = straight;
+            nodes[3] = middle;
+            Outline::of(&nodes).expect("a triangle").is_regular(&nodes)
+        };
+        assert!(with([0.5, 0.0]) && !with([0.5, -0.1]) && !with([0.5, 0.1]) && !with([0.25, 0.0]));
     }
 
     #[test]

@@ -47,6 +47,37 @@ fn handbook_values_lie_within_their_stated_accuracy() {
     }
 }
 
+/// [−1, 1]² between rollers, drawn apart, with a crack from (−1/4, 0) to (1/4, 0): in the whole both faces, in its upper half one and a
+/// roller beside either tip. What extracts the intensity ends where the crack does.
+#[test]
+fn an_inner_crack_has_the_intensity_of_its_half() {
+    let upper =
+        "[[geometry.polygons]]\nbody = \"p\"\npoints = [[-1, 0], [-0.25, 0], [0.25, 0], [1, 0], [1, 1], [-1, 1]]\n";
+    let lower = "[[geometry.polygons]]\nbody = \"p\"\npoints = [[-1, -1], [1, -1], [1, 0], [0.25, 0], [-0.25, 0], [-1, 0]]\n\
+                 edges = [\"foot\", \"side\", \"\", \"low\", \"\", \"side\"]\n";
+    let roller = |on: &str, by: f64| format!("[[supports]]\non = \"{on}\"\ntype = \"roller\"\ndisplacement = {by:?}\n");
+    let problem = |polygons: String, supports: String| {
+        let text = format!(
+            "[model]\nkinematics = \"plane-strain\"\n[geometry]\nsize = 0.2\n{polygons}[bodies.p]\nyoung = 1.0\npoisson = 0.3\n{}{}{supports}",
+            roller("top", 1.0),
+            roller("side", 0.0)
+        );
+        Problem::load(Scene::parse(&text, "inner.toml".as_ref()).expect("a scene")).expect("a problem")
+    };
+    let whole = || {
+        let edges = "edges = [\"\", \"high\", \"\", \"side\", \"top\", \"side\"]\n";
+        problem(format!("{lower}{upper}{edges}"), roller("foot", 1.0))
+    };
+    let edges = "edges = [\"ahead\", \"\", \"ahead\", \"side\", \"top\", \"side\"]\n";
+    let half = bounded(problem(format!("{upper}{edges}"), roller("ahead", 0.0)), Mode::I, [0.25, 0.0], 0.01);
+    for tip in [0.25, -0.25] {
+        let [low, high] = bounded(whole(), Mode::I, [tip, 0.0], 0.01);
+        assert!(low <= half[1] && half[0] <= high, "{tip}: [{low}, {high}] and {half:?}");
+    }
+    let [low, high] = bounded(whole(), Mode::II, [0.25, 0.0], 0.01 / f64::EPSILON);
+    assert!(low <= 0.0 && 0.0 <= high, "[{low}, {high}]");
+}
+
 /// [−1, 1]² with a crack from (−1, 0) to (a, 0), of n × n squares, as a mesh file with two vertices at each point of the crack behind the tip.
 fn cracked(folder: &std::path::Path, n: usize, length: usize, load: &str) -> Problem {
     let m = n + 1;

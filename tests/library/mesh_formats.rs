@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use hypercircle::problem::{Condition, Problem};
 use hypercircle::scene::{Body, Draft, Kinematics, Load, MeshSource, Scene, Support, SupportKind, Traction};
 
+const LIMIT: std::time::Duration = std::time::Duration::from_secs(60);
+
 /// The plate (0, 2) × (0, 1): a quadrilateral on the left, two triangles on the right, numbered from one.
 pub const POINTS: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]];
 
@@ -133,6 +135,31 @@ fn ideas_universal_files() {
     for dataset in ["2467", "2477", "2435", "2452", "2417", "2429"] {
         let path = folder.write(&format!("{dataset}.unv"), unv(&unv_groups(dataset)));
         check(&path, &["PLATE"], ["wall side", "LOAD"]);
+    }
+}
+
+/// A node and an element that are given twice, and a group with an element that is not there.
+#[test]
+fn numbers_that_are_given_twice_are_refused_and_members_that_are_lost_are_told() {
+    let folder = Folder::new();
+    let groups = unv_groups("2467");
+    let lost = unv(&groups.replacen("         8        11", "         8       999", 1));
+    let (_, notes) = hypercircle::mesh::inventory::Inventory::read(&folder.write("lost.unv", lost), LIMIT)
+        .map(|found| (found.bodies.len(), found.notes))
+        .expect("an inventory");
+    assert!(notes.iter().any(|note| note.text.contains("'wall side' has element 999")), "{notes:?}");
+    let again = "         1         1         1        11\n    5.0D0    0.0D0    0.0D0\n";
+    let node = unv(&groups).replacen("    -1\n    -1\n  2412", &format!("{again}    -1\n    -1\n  2412"), 1);
+    let element = unv(&groups).replacen("        12        21", "        11        21", 1);
+    let nan = unv(&groups).replacen("0.0000000000000000D+00", "nan                   ", 1);
+    for (name, text, found) in [
+        ("node.unv", node, "node 1 is given twice, at (0, 0, 0) and at (5, 0, 0)"),
+        ("element.unv", element, "cell 11 is given twice"),
+        ("nan.unv", nan, "node 1 has a coordinate that is no finite number"),
+    ] {
+        let path = folder.write(name, text);
+        let error = Problem::load(scene(path, &["PLATE"], ["wall side", "LOAD"])).expect_err("no mesh").to_string();
+        assert!(error.contains(found), "{name}: {error}");
     }
 }
 
@@ -337,6 +364,20 @@ fn nastran_decks() {
     // As Gmsh writes it: bulk data from the first line on.
     let (_, bulk) = text.split_once("BEGIN BULK\n").expect("bulk data");
     check(&folder.write("gmsh.bdf", format!("$ Created by Gmsh\n{bulk}")), &["plate"], ["7", "8"]);
+}
+
+/// Cells of bodies of revolution in the plane of Nastran, in which the axis is along z.
+#[test]
+fn nastran_s_bodies_of_revolution_lie_in_its_own_plane() {
+    let folder = Folder::new();
+    let places = [[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [2.0, 0.5], [1.0, 1.0], [1.0, 0.5]];
+    for turned in [true, false] {
+        let point = |[r, z]: [f64; 2]| if turned { format!("{r:?},0.0,{z:?}") } else { format!("{r:?},{z:?},0.0") };
+        let grid: String = places.iter().enumerate().map(|(i, p)| format!("GRID,{},,{}\n", i + 1, point(*p))).collect();
+        let path = folder.write("turned.bdf", format!("BEGIN BULK\n{grid}CTRIAX6,1,1,1,2,3,4,5,6\nENDDATA\n"));
+        let found = hypercircle::mesh::inventory::Inventory::read(&path, LIMIT).expect("an inventory");
+        assert!((found.bodies[0].area - 1.0).abs() < 1e-12, "{turned}: {:?}", found.bodies);
+    }
 }
 
 #[test]

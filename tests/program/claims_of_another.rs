@@ -94,3 +94,11 @@ fn any_rule_of_full_integration_will_do_on_bodies_of_revolution() {
         assert_eq!(claimed(scene, field), (0, Vec::new()), "{field}");
     }
 }
+
+/// Contact at nodes that face each other is met there, and not where the gap bends between them.
+#[test]
+fn a_gap_that_bends_within_an_edge_is_closed_at_the_nodes() {
+    for scene in ["kinked", "kinked_quadratic"] {
+        assert_eq!(claimed(scene, scene), (0, Vec::new()), "{scene}");
+    }
+}

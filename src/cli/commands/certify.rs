@@ -204,9 +204,9 @@ fn held(
         comparison.checks.push(check);
     }
     let answers = session.sharpest_answers(run, sharpened.as_ref(), &args.solve);
-    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
+    comparison.checks.extend(wanted_checks(certified, &answers, &args.solve.wanted(), &allow));
     comparison.checks.extend(quantity_checks(certified, &sharpest.bracket, &answers, &comparison, &allow));
-    comparison.checks.extend(value_checks(&answers, given, &allow));
+    comparison.checks.extend(value_checks(certified, &answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, comparison.judged.is_empty(), &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
     comparison.checks.extend(against);
@@ -289,8 +289,8 @@ fn values_held(
     let (certified, allow) = (&run.certified, args.judge.allowances());
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, Vec::new(), &allow);
     let answers = session.answers(certified, &args.solve);
-    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
-    comparison.checks.extend(value_checks(&answers, given, &allow));
+    comparison.checks.extend(wanted_checks(certified, &answers, &args.solve.wanted(), &allow));
+    comparison.checks.extend(value_checks(certified, &answers, given, &allow));
     args.judge.refuse_unknown(&allow, &comparison.checks, false, &args.job)?;
     let (against, baseline) = args.judge.against_baseline(certified, &comparison, &answers, &allow, &args.job)?;
     comparison.checks.extend(against);

@@ -59,10 +59,9 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let scene = starting_scene(&inventory, &relative(&args.file, &target), &stem);
     // What is written is what a scene has to be, whatever names the file has.
     Scene::parse(&scene, &target).map_err(|e| {
-        CliError::stopped(
-            Exit::Failed,
-            format!("no scene can be made of the names of {}: {e}", args.file.display()),
-            "",
+        bad(
+            format!("no scene can be made of what {} holds: {e}", args.file.display()),
+            "check its cells, or write the mesh again",
         )
     })?;
     folder::replace(&dir, &[(PAGE, page(&inventory, &scene).into_bytes())], &[])

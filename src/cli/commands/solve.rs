@@ -88,6 +88,6 @@ pub fn solved(args: &Args, session: &Session, folder: Option<&Path>) -> Result<S
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);
     let answers = session.answers(certified, &args.solve);
-    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
+    comparison.checks.extend(wanted_checks(certified, &answers, &args.solve.wanted(), &allow));
     Ok(Solved { run, comparison, answers })
 }

@@ -223,7 +223,7 @@ pub fn verified(args: &Args, session: &Session, folder: Option<&Path>) -> Result
     };
     let sharpest = sharpened.as_ref().map_or(certified, |finer| &finer.certified);
     let answers = session.sharpest_answers(&run, sharpened.as_ref(), &args.solve);
-    comparison.checks.extend(wanted_checks(&answers, &args.solve.wanted(), &allow));
+    comparison.checks.extend(wanted_checks(certified, &answers, &args.solve.wanted(), &allow));
     let of_models = quantity_checks(certified, &sharpest.bracket, &answers, &comparison, &allow);
     comparison.checks.extend(of_models);
     args.judge.refuse_unknown(&allow, &comparison.checks, failure.is_some(), &args.job)?;

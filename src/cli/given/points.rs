@@ -22,9 +22,14 @@ const COLUMNS: [&str; 6] = ["name", "body", "x", "y", "quantity", "value"];
 pub const SHAPE: &str = "write a header `name,value`, or `x,y,quantity,value` (and `body` where the scene has several), then one line for each \
                          value; quantities are xx, yy, xy, von-mises, largest-principal, smallest-principal, ux and uy";
 
+/// A text without the byte order mark that spreadsheets begin UTF-8 with.
+fn unmarked(text: &str) -> &str {
+    text.trim_start_matches('\u{feff}')
+}
+
 /// True if a file of this text is such a table: its first line has a column for values.
 pub fn is_table(text: &str) -> bool {
-    text.lines().next().is_some_and(|line| {
+    unmarked(text).lines().next().is_some_and(|line| {
         let columns = cells(line, separator(line));
         columns.len() > 1 && columns.iter().any(|column| column.eq_ignore_ascii_case("value"))
     })
@@ -35,7 +40,7 @@ pub fn is_table(text: &str) -> bool {
 /// # Errors
 /// A sentence with the line.
 pub fn read(text: &str) -> Result<Vec<Row>, String> {
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let mut lines = unmarked(text).lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let Some((_, header)) = lines.next() else { return Err("it is empty".to_string()) };
     let by = separator(header);
     let columns: Vec<String> = cells(header, by).iter().map(|column| column.to_lowercase()).collect();

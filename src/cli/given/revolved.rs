@@ -50,7 +50,7 @@ pub fn refuse_claims(problem: &Problem, claims: Claims) -> Result<(), CliError> 
     } else {
         (
             "--solution: contacts cut triangles of the file, and what is then the discrete solution is not looked into on bodies of revolution",
-            "give both sides of every contact the same vertices, or leave --solution out",
+            "give both sides of every contact the same vertices, and kinks of the gap one, or leave --solution out",
         )
     };
     Err(CliError::stopped(Exit::BadInput, what, help))

@@ -7,6 +7,7 @@ use crate::compare::Solution;
 use crate::compare::solution::SOLVER;
 use crate::diagnose::Finding;
 use crate::diagnose::words::number;
+use crate::scene::{Support, SupportKind};
 
 /// Forces this small beside all others are none.
 const NO_FORCE: f64 = 1e-6;
@@ -19,12 +20,25 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
     let enough = (SOLVER + solution.candidate.precision) * solution.reference;
     let applied = solution.applied();
     let mut findings: Vec<Finding> = on_axis(solution, enough).into_iter().collect();
-    for support in &scene.supports {
+    let vertices = mesh.points.len();
+    let nodes_of = |support: &Support| -> Vec<usize> {
         let edges = mesh.boundary(&support.on);
-        let vertices = mesh.points.len();
         let nodes: BTreeSet<usize> =
             edges.iter().flat_map(|e| mesh.edges[*e].vertices.into_iter().chain([vertices + e])).collect();
-        let nodes: Vec<usize> = nodes.into_iter().filter(|n| *n < solution.rest.len()).collect();
+        nodes.into_iter().filter(|n| *n < solution.rest.len()).collect()
+    };
+    let is_missed = |n: &usize| {
+        let [x, y] = of_support(solution, *n);
+        x.hypot(y) > enough
+    };
+    let rigid = scene.supports.iter().filter(|support| !matches!(support.kind, SupportKind::Spring { .. }));
+    let all: Vec<(&Support, Vec<usize>)> = rigid.map(|support| (support, nodes_of(support))).collect();
+    let missed: Vec<BTreeSet<usize>> =
+        all.iter().map(|(_, nodes)| nodes.iter().copied().filter(is_missed).collect()).collect();
+    // A corner that another support misses with all of its nodes is that one's.
+    let is_of_another =
+        |own: &BTreeSet<usize>| missed.iter().any(|other| other.len() > own.len() && own.is_subset(other));
+    for ((support, nodes), _) in all.iter().zip(&missed).filter(|(_, own)| !is_of_another(own)) {
         let off: Vec<[f64; 2]> = nodes.iter().map(|n| of_support(solution, *n)).collect();
         let (worst, depth) = nodes.iter().zip(&off).fold((0, 0.0_f64), |(node, most), (n, d)| {
             let size = d[0].hypot(d[1]);
@@ -48,7 +62,7 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
                 number(depth)
             );
             Finding::new(name("missing"), Some(depth), Some(0.0), sentence)
-        } else if let Some(s) = prescribed(solution, &nodes) {
+        } else if let Some(s) = prescribed(solution, nodes) {
             let sentence = format!("the displacement of {on} is {} times the prescribed one", number(s));
             Finding::new(name("displacement"), Some(s), Some(1.0), sentence)
         } else if let Some(stiffness) = spring(&off, &force) {

@@ -126,6 +126,20 @@ def from_gmsh(source):
     return {"points": points, "blocks": blocks, "node_sets": sets, "numbers": numbers}
 
 
+def checked(found):
+    """The same, or a refusal that names the node or the cell at which it is no mesh."""
+    for number, point in enumerate(found["points"], 1):
+        if not all(map(math.isfinite, point)):
+            refuse(f"node {number} has a coordinate that is no finite number")
+    count = len(found["points"])
+    for block in found["blocks"]:
+        for number, nodes in enumerate(block["nodes"], 1):
+            wrong = next((node for node in nodes if not 0 <= node < count), None)
+            if wrong is not None:
+                refuse(f"{block['shape']} {number} has the node with index {wrong}, and those of the file are 0 to {count - 1}")
+    return found
+
+
 def main():
     source, target = sys.argv[1:]
     reader = own_reader(source)
@@ -151,7 +165,7 @@ def main():
         except Unreadable as error:
             refuse(str(error))
     with open(target, "w", encoding="utf-8") as out:
-        json.dump(found, out)
+        json.dump(checked(found), out)
 
 
 main()

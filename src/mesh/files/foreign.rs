@@ -37,6 +37,9 @@ struct Converted {
     /// Dimension, number and name of each group that has a number.
     #[serde(default)]
     numbers: Vec<(i32, i32, String)>,
+    /// What the file lacks and can do without.
+    #[serde(default)]
+    notes: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -115,7 +118,9 @@ pub fn parse(text: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError
             content.elements.push(Element { kind, tag, nodes, physical: physical_of(groups), entity: None });
         }
     }
-    content.into_raw(file)
+    let (raw, mut notes) = content.into_raw(file)?;
+    notes.extend(found.notes.into_iter().map(|text| Note { weakens_guarantee: false, text }));
+    Ok((raw, notes))
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Which edges stand for arcs of circles, so that refining puts new vertices on these.
 
 use crate::mesh::Curved;
-use crate::problem::{Condition, ContactPair, Problem, Refinement};
-use crate::scene::{Circle, FrictionBound, Gap, MeshSource, Normals, Scene};
+use crate::problem::{Condition, ContactPair, Note, Problem, Refinement};
+use crate::scene::{Circle, FrictionBound, Gap, MeshSource, Normals, Scene, counted};
 
 /// Part of the radius within which vertices of a contact lie on a circle.
 const ON_CIRCLE: f64 = 1e-6;
@@ -136,6 +136,31 @@ fn arcs(problem: &Problem, found: &mut Curved) {
             found.insert(e, *circle);
         }
     }
+}
+
+/// Puts the remark on arcs of the outline in place of that of a coarser mesh, which stands where edges are kept.
+pub(in crate::problem) fn remark(problem: &mut Problem) {
+    const BEGINS: &str = "arcs of [geometry]: ";
+    let mut found = Curved::default();
+    arcs(problem, &mut found);
+    let off = |(e, circle): (&usize, &Circle)| {
+        let [a, b] = problem.mesh.edges[*e].vertices.map(|v| problem.mesh.points[v]);
+        let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        let on = circle.nearest(middle);
+        (on[0] - middle[0]).hypot(on[1] - middle[1])
+    };
+    let farthest = found.iter().map(off).fold(0.0, f64::max);
+    if farthest == 0.0 {
+        return;
+    }
+    let edges = counted(found.len(), "edge");
+    let stand = if found.len() == 1 { "stands" } else { "stand" };
+    let text = format!(
+        "{BEGINS}{edges} {stand} for them, up to {farthest:.1e} beside. The bounds are for the outline of straight edges; refinement puts \
+         its vertices on the arcs"
+    );
+    problem.notes.retain(|note| !note.text.starts_with(BEGINS));
+    problem.notes.push(Note { weakens_guarantee: false, text });
 }
 
 /// Name, circle and ends of the arcs in `[geometry]`.

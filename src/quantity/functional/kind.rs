@@ -1,6 +1,7 @@
 //! The kind of a quantity, for words and sizes.
 
 use crate::problem::{Problem, Sizes};
+use crate::scene::{PointValue, Target};
 
 /// The kind of a quantity, for the words of reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,6 +19,19 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// That of what a scene asks for.
+    pub fn of(target: &Target) -> Self {
+        match target {
+            Target::Displacement { .. } | Target::Point { value: PointValue::Displacement(_), .. } => {
+                Kind::Displacement
+            }
+            Target::Stress { .. } | Target::Point { .. } => Kind::Stress,
+            Target::StressIntensity { .. } => Kind::StressIntensity,
+            Target::ContactForce { .. } | Target::SupportForce { .. } => Kind::Force,
+            Target::Moment { .. } => Kind::Moment,
+        }
+    }
+
     /// True if it is a force or moment transmitted by contacts or supports.
     pub fn is_carried(self) -> bool {
         matches!(self, Kind::Force | Kind::Moment)

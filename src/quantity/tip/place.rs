@@ -1,5 +1,7 @@
 //! Where the tip of a crack is on a mesh, and the triangles about it.
 
+use std::collections::{HashMap, HashSet};
+
 use crate::problem::{Condition, Problem};
 use crate::quantity::point::distance;
 use crate::scene::Mode;
@@ -173,16 +175,19 @@ impl Place {
         if half && mode == Mode::II {
             return Err(other("half a model has no sliding mode: a roller ahead of the tip is a line of symmetry"));
         }
-        let role = |e: usize| {
-            let ends = mesh.edges[e].vertices.map(seen);
-            let along = |of: [f64; 2]| {
-                ends.iter().all(|x| {
+        let along =
+            |e: usize, of: [f64; 2]| {
+                mesh.edges[e].vertices.map(seen).iter().all(|x| {
                     (x[0] * of[1] - x[1] * of[0]).abs() <= ON * size && x[0] * of[0] + x[1] * of[1] >= -ON * size
                 })
             };
-            if along(face) && (free(e) || touches(problem, e, mode)) {
+        let like_a_face = outline.iter().copied().filter(|&e| along(e, face) && (free(e) || touches(problem, e, mode)));
+        // Beyond the other end of the crack the body is whole, and has other cracks perhaps.
+        let faces = connected(problem, like_a_face.collect(), vertex);
+        let role = |e: usize| {
+            if faces.contains(&e) {
                 Role::Face
-            } else if half && along(axes[0]) && roller(e, axes[1]) {
+            } else if half && along(e, axes[0]) && roller(e, axes[1]) {
                 Role::Ahead
             } else {
                 Role::Other
@@ -204,6 +209,8 @@ impl Place {
             .filter(|&&e| role(e) == Role::Other)
             .map(|&e| distance(seen(mesh.edges[e].vertices[0]), seen(mesh.edges[e].vertices[1])))
             .fold(f64::INFINITY, f64::min);
+        let end = faces.iter().flat_map(|&e| mesh.edges[e].vertices).map(far).fold(0.0, f64::max);
+        let radius = radius.min(end);
         let coarse = || NoTip::Coarse { x, y, radius: format!("{radius:.3e}") };
         let mut eta: Vec<f64> = (0..mesh.points.len()).map(|v| cut_off(far(v) / radius)).collect();
         let mut place =
@@ -263,6 +270,20 @@ impl Place {
         }
         nearest / longest
     }
+}
+
+/// Those of `edges` from which a way along them leads to `vertex`.
+fn connected(problem: &Problem, edges: Vec<usize>, vertex: usize) -> HashSet<usize> {
+    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
+    for &e in &edges {
+        problem.mesh.edges[e].vertices.into_iter().for_each(|v| at.entry(v).or_default().push(e));
+    }
+    let (mut found, mut next) = (HashSet::new(), vec![vertex]);
+    while let Some(v) = next.pop() {
+        let new: Vec<usize> = at.remove(&v).into_iter().flatten().filter(|e| found.insert(*e)).collect();
+        next.extend(new.into_iter().flat_map(|e| problem.mesh.edges[e].vertices));
+    }
+    found
 }
 
 /// True if an edge is one side of a frictionless contact across which w of this mode does not jump.

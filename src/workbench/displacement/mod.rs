@@ -307,7 +307,9 @@ fn outline_of(nodes: &[[f64; 2]]) -> Result<Outline, String> {
             return Err(format!("nodes {j} and {i} are in the same place, {:?}", nodes[i]));
         }
     }
-    Outline::of(nodes).ok_or_else(|| "the nodes lie on one line and enclose no area".into())
+    Outline::of(nodes).ok_or_else(|| {
+        "the nodes lie on one line to six digits and enclose no area that could be told from none".into()
+    })
 }
 
 /// Refuses nodes beyond the axis of a body of revolution.

@@ -108,7 +108,11 @@ fn energy(e: &DisplacementElement) -> Result<Measured, Fault> {
     };
     let exact = material.hooke() * material.thickness;
     let value = energy_off(&e.matrix, &e.nodes, &e.outline, &material);
-    let sentence = if value <= e.precision {
+    let allowed = allowed(e, &exact)?;
+    if value > allowed {
+        refuse_irregular(e)?;
+    }
+    let sentence = if value <= allowed {
         "Constant strains store what they must".to_string()
     } else {
         let ratio = |i: usize| percent(seen[(i, i)] / exact[(i, i)]);
@@ -119,7 +123,36 @@ fn energy(e: &DisplacementElement) -> Result<Measured, Fault> {
             ratio(2)
         )
     };
-    Ok(Measured::new(value, e.precision, sentence))
+    Ok(Measured::new(value, allowed, sentence))
+}
+
+/// Nothing is told from a matrix in which this part of what constant strains store is rounding.
+const TOO_THIN: f64 = 1e-3;
+
+/// What rounding of the entries may change of the energies of constant strains, relative to the largest: in a thin element they are small
+/// differences of large products.
+fn allowed(e: &DisplacementElement, exact: &Matrix3<f64>) -> Result<f64, Fault> {
+    let u = strains(&e.nodes).abs();
+    let size = u.tr_mul(&(e.matrix.abs() * &u)).amax() / (e.outline.area * exact.amax());
+    let allowed = e.precision * size.max(1.0);
+    if allowed > TOO_THIN {
+        return Err(Fault::NotMade(
+            "the element is so thin that rounding of the entries hides its constant strains".into(),
+        ));
+    }
+    Ok(allowed)
+}
+
+/// The area and the traces of an element are read off its nodes as if its sides were straight, and their nodes evenly spaced.
+fn refuse_irregular(e: &DisplacementElement) -> Result<(), Fault> {
+    if e.outline.is_regular(&e.nodes) {
+        return Ok(());
+    }
+    Err(Fault::NotMade(
+        "nodes of its sides are not evenly spaced on straight lines: what constant strains do depends on the curve, or on the coordinate, \
+         in which the element has its traces, and the matrix does not tell them. Give it with straight sides and nodes in their middles"
+            .into(),
+    ))
 }
 
 fn forces(e: &DisplacementElement) -> Result<Measured, Fault> {
@@ -129,16 +162,20 @@ fn forces(e: &DisplacementElement) -> Result<Measured, Fault> {
         None => (seen, "that its energies show"),
     };
     let value = forces_off(&e.matrix, &e.nodes, &e.outline, &hooke);
-    let sentence = match value <= e.precision {
+    let allowed = allowed(e, &hooke)?;
+    if value > allowed {
+        refuse_irregular(e)?;
+    }
+    let sentence = match value <= allowed {
         true => format!("Nodal forces of constant strains are those of the stress {of}"),
-        false if e.material.is_some() && forces_off(&e.matrix, &e.nodes, &e.outline, &seen) <= e.precision => {
+        false if e.material.is_some() && forces_off(&e.matrix, &e.nodes, &e.outline, &seen) <= allowed => {
             "Nodal forces of constant strains are those of another material".to_string()
         }
         false => {
             format!("Nodal forces of constant strains are not those of the stress {of}: they sit on the wrong nodes")
         }
     };
-    Ok(Measured::new(value, e.precision, sentence))
+    Ok(Measured::new(value, allowed, sentence))
 }
 
 fn distorted(e: &DisplacementElement) -> Result<Measured, Fault> {

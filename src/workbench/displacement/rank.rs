@@ -59,13 +59,11 @@ fn hourglass(e: &DisplacementElement) -> Option<DMatrix<f64>> {
 
 fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
     let rigid = motions(&e.nodes);
-    if let Some(reference) = Reference::of(e).ok().filter(|_| e.precision > FEW_DIGITS) {
-        let [at_few, at_all] = [e.precision, FEW_DIGITS].map(|zero| spurious(reference.matrix(), &rigid, zero).ncols());
-        if at_few > at_all {
-            let text =
-                "the entries have too few digits to tell motions that store little from those that store nothing";
-            return Err(Fault::NotMade(text.into()));
-        }
+    // What hides a motion of the element that is known to have no other hides one of this element too.
+    if Reference::of(e).is_ok_and(|reference| spurious(reference.matrix(), &rigid, e.precision).ncols() > 0) {
+        let why = if e.precision > FEW_DIGITS { "the entries have too few digits" } else { "the element is too thin" };
+        let text = format!("{why} to tell motions that store little from those that store nothing");
+        return Err(Fault::NotMade(text));
     }
     let found = spurious(&e.matrix, &rigid, e.precision);
     let singular = e.matrix.clone().singular_values();

@@ -55,11 +55,34 @@ pub fn groups(rows: &[&Row], nodes: usize) -> Vec<Vec<usize>> {
 }
 
 /// Removes from the nodal forces of `solution` the part that forces ≥ 0 on `rows` can balance; returns their work on the gaps, and
-/// their sum.
+/// their sum. Where forces of closed rows do, no other has one: several rows may stand for one nodal force.
 pub fn take(rows: &[&Row], solution: &mut Solution<'_>) -> [f64; 2] {
+    let open = -solution.sticks_below();
+    let closed: Vec<&Row> = rows.iter().copied().filter(|row| row.excess(solution.candidate) >= open).collect();
     let mut nodes: Vec<usize> = rows.iter().flat_map(|row| row.terms.iter().map(|(node, _)| *node)).collect();
     nodes.sort_unstable();
     nodes.dedup();
+    let enough = solution.allowed() * solution.scale;
+    let of_closed = (closed.len() < rows.len()).then(|| balance(&closed, &nodes, solution)).flatten();
+    let found = of_closed.filter(|found| found.left <= enough).or_else(|| balance(rows, &nodes, solution));
+    // Where the working set does not settle, the whole force is left over and the check fails in the open.
+    let Some(found) = found else { return [0.0; 2] };
+    found.rest.into_iter().for_each(|(node, rest)| solution.rest[node] = rest);
+    found.works
+}
+
+/// What forces ≥ 0 on some rows leave of the nodal forces.
+struct Balanced {
+    /// The rest at each of the nodes.
+    rest: Vec<(usize, [f64; 2])>,
+    /// Its size, as a residual is weighed.
+    left: f64,
+    /// The work of the forces on the gaps, and their sum.
+    works: [f64; 2],
+}
+
+/// The forces on `rows` that leave least of the forces of `solution` at `nodes`, in order.
+fn balance(rows: &[&Row], nodes: &[usize], solution: &Solution<'_>) -> Option<Balanced> {
     // Forces are weighed as the residual is.
     let root = |node: usize| solution.forces.stiffness[node].max(f64::MIN_POSITIVE).sqrt();
     let mut units = Vec::new();
@@ -79,11 +102,11 @@ pub fn take(rows: &[&Row], solution: &mut Solution<'_>) -> [f64; 2] {
     }
     let load = nodes.iter().flat_map(|node| solution.rest[*node].map(|x| -x / root(*node)));
     let load = DVector::from_iterator(2 * nodes.len(), load);
-    // Where the working set does not settle, the whole force is left over and the check fails in the open.
-    let Ok((rest, forces)) = balanced(&load, &units) else { return [0.0; 2] };
-    for (place, node) in nodes.iter().enumerate() {
-        let root = solution.forces.stiffness[*node].max(f64::MIN_POSITIVE).sqrt();
-        solution.rest[*node] = [rest[2 * place] * root, rest[2 * place + 1] * root];
-    }
-    forces.into_iter().fold([0.0; 2], |sum, (row, force)| [0, 1].map(|i| sum[i] + force * works[row][i]))
+    let (rest, forces) = balanced(&load, &units).ok()?;
+    let at = |(place, node): (usize, &usize)| (*node, [0, 1].map(|c| rest[2 * place + c] * root(*node)));
+    Some(Balanced {
+        rest: nodes.iter().enumerate().map(at).collect(),
+        left: rest.norm(),
+        works: forces.into_iter().fold([0.0; 2], |sum, (row, force)| [0, 1].map(|i| sum[i] + force * works[row][i])),
+    })
 }

@@ -2,7 +2,7 @@
 //!
 //! Its test functions are those of the file. Whatever the method, mortar, node to segment or quadrature, contact is a pressure
 //! λ ≥ 0 along the direction of contact, the same on both sides: on the parts of edges between the vertices of either side, the work of
-//! λ on the jump is that of forces ≥ 0 on its Bernstein coefficients there. The part of the nodal forces that such forces cannot balance
+//! λ on the jump is that of forces ≥ 0 on its Bernstein coefficients there, or at the nodes of the file. The part of the nodal forces that such forces cannot balance
 //! is the residual; the energy identity checks that they do no work on the opening. A method may decide if contact is closed at the nodes
 //! of one side, or in the mean with the functions of one side, plain or dual, or edge by edge: the least penetration among these counts.
 
@@ -37,7 +37,14 @@ impl<'a> Nonmatching<'a> {
     /// `solution` is on the mesh of `glued` before contact cut it.
     pub fn new(mut solution: Solution<'a>, glued: &'a Problem) -> Self {
         let space = Space::new(solution.problem, glued, solution.candidate.degree);
-        let mut rows: Vec<Vec<Row>> = glued.interfaces.iter().map(|contact| space.rows(&contact.pairs)).collect();
+        let rows = |contact: &Interface| {
+            let (mut rows, between) = (space.rows(&contact.pairs), space.between(&contact.pairs));
+            if rows.len() + between.len() <= MOST_ROWS {
+                rows.extend(between);
+            }
+            rows
+        };
+        let mut rows: Vec<Vec<Row>> = glued.interfaces.iter().map(rows).collect();
         let too_many: Vec<usize> = (0..rows.len()).filter(|i| rows[*i].len() > MOST_ROWS).collect();
         let law = |i: usize| {
             let pairs = &glued.interfaces[i].pairs;

@@ -7,7 +7,7 @@ use crate::compare::solution::Solution;
 use crate::compare::solution::weak::{Point, Rows, longest};
 use crate::element::polynomial::quadrature::segment_rule;
 use crate::problem::{ContactPair, Problem};
-use crate::vector::distance;
+use crate::vector::{distance, dot};
 
 /// Weights of shape functions below this are zero: a vertex that lies on an edge lies there to round-off.
 const BESIDE: f64 = 1e-6;
@@ -53,6 +53,29 @@ impl<'a> Space<'a> {
             }
         }
         rows
+    }
+
+    /// The jumps at the nodes between vertices of the file, at which methods of degree 2 may ask for contact.
+    pub fn between(&self, pairs: &[ContactPair]) -> Vec<Row> {
+        if self.degree == 1 {
+            return Vec::new();
+        }
+        let place = |ends: [usize; 2]| {
+            let [p, q] = ends.map(|v| self.glued.mesh.points[v]);
+            let along = [q[0] - p[0], q[1] - p[1]];
+            let corners = self.barycentric(self.beside(ends), [0, 1].map(|c| p[c] + 0.5 * along[c])).1;
+            let [(a, _), (b, _)] = corners[..] else { return None };
+            let [a, b] = [a, b].map(|v| self.glued.mesh.points[v]);
+            let from = [0, 1].map(|c| 0.5 * (a[c] + b[c]) - p[c]);
+            let at = dot(from, along) / dot(along, along);
+            (BESIDE..1.0 - BESIDE).contains(&at).then_some(at)
+        };
+        let of = |pair: &ContactPair| {
+            let places = [Some(pair.first), pair.second].map(|ends| place(ends?));
+            let same = matches!(places, [Some(a), Some(b)] if (a - b).abs() < BESIDE);
+            places.into_iter().take(if same { 1 } else { 2 }).flatten().map(|at| self.row(pair, at)).collect::<Vec<_>>()
+        };
+        pairs.iter().flat_map(of).collect()
     }
 
     /// The jump at a part `at` of a pair.

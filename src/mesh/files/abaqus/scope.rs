@@ -212,5 +212,10 @@ pub(super) fn members(line: &Line, generate: bool) -> Result<Vec<Member>, MeshEr
         return Ok(Vec::new());
     }
     let step = if line.fields.len() > 2 { line.whole(2)?.max(1) } else { 1 };
-    Ok(vec![Member::Range([line.whole(0)?, line.whole(1)?, step])])
+    let [first, last] = [line.whole(0)?, line.whole(1)?];
+    if first > last {
+        let what = format!("it generates numbers from {first} to {last}, and there are none");
+        return Err(line.fault(what, "write the smaller number first"));
+    }
+    Ok(vec![Member::Range([first, last, step])])
 }

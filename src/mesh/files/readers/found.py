@@ -1,6 +1,7 @@
 """What a reader of its own collects. Nothing here needs more than Python; a package that a format needs is named with code 45."""
 
 import gzip
+import math
 import os
 import sys
 import tempfile
@@ -29,13 +30,26 @@ class Found:
         self.node_sets = {}
         self.numbers = {}  # Name by dimension and number.
         self.fields = {}  # Rows by point, by name.
+        self.notes = []
 
     def point(self, tag, coordinates):
+        point = [float(x) for x in coordinates]
+        if not all(map(math.isfinite, point)):
+            raise Unreadable(f"node {tag} has a coordinate that is no finite number")
+        if tag in self.index:
+            other = self.points[self.index[tag]]
+            if other != point:
+                places = " and at ".join("(" + ", ".join(f"{x:g}" for x in of) + ")" for of in (other, point))
+                raise Unreadable(f"node {tag} is given twice, at {places}")
+            return
         self.index[tag] = len(self.points)
-        self.points.append([float(x) for x in coordinates])
+        self.points.append(point)
 
     def cell(self, shape, nodes, groups=(), tag=None):
         if tag is not None:
+            other = self.cells[self.by_tag[tag]][:2] if tag in self.by_tag else None
+            if other is not None and (other[0] == "line") == (shape == "line") and other[1] != list(nodes):
+                raise Unreadable(f"cell {tag} is given twice, with other nodes")
             self.by_tag[tag] = len(self.cells)
         self.cells.append((shape, list(nodes), list(groups)))
 
@@ -85,7 +99,7 @@ class Found:
             raise Unreadable("there is no cell in it")
         sets = {name: [self.index[tag] for tag in tags if tag in self.index] for name, tags in self.node_sets.items()}
         numbers = [[*key, name] for key, name in self.numbers.items() if abs(key[1]) < 2**31]
-        return {"points": self.points, "blocks": self.blocks(), "node_sets": sets, "numbers": numbers}
+        return {"points": self.points, "blocks": self.blocks(), "node_sets": sets, "numbers": numbers, "notes": self.notes}
 
 
 def content_of(source):

@@ -11,6 +11,10 @@ NASTRAN_CELLS = {name: (shape, count) for names, shape, count in [
 ] for name in names.split()}
 
 
+# Cells of a body of revolution, which lie in the plane y = 0 with the axis along z, or in z = 0 with the axis along y.
+NASTRAN_TURNED = set("CTRAX3 CTRAX6 CTRIAX CTRIAX6 CQUADX4 CQUADX8 CQUADX".split())
+
+
 def nastran_lines(source, depth=0):
     """Place and text of the lines of bulk data, with those of included files. A deck without its first words is bulk data from its first line on."""
     lines = lines_of(source)
@@ -104,7 +108,7 @@ def nastran_cell(found, place, name, fields):
 def read_nastran(source):
     """Bulk data of Nastran: points and elements, by their property."""
     found = Found("Nastran")
-    points, frames, usual, others = [], {0: None}, "", {}
+    points, frames, usual, others, turned = [], {0: None}, "", {}, []
     for place, name, fields in nastran_cards(source):
         try:
             if name == "GRID":
@@ -116,12 +120,15 @@ def read_nastran(source):
                 frames[int(fields[0])] = name[-1], int(fields[1] or 0), [numbers[i:i + 3] for i in (0, 3, 6)]
             elif name in NASTRAN_CELLS:
                 nastran_cell(found, place, name, fields)
+                turned.append(name in NASTRAN_TURNED)
             elif re.match("C(?!ORD|ONM|SET|LOAD)", name):
                 others.setdefault(name, place)
         except ValueError as error:
             raise Unreadable(f"{place}: a field of {name} is not the number that belongs there ({error})") from None
-    for tag, frame, point in points:
-        found.point(tag, nastran_basic(point, int(frame or usual or 0), frames))
+    points = [(tag, nastran_basic(point, int(frame or usual or 0), frames)) for tag, frame, point in points]
+    across = turned and all(turned) and all(y == 0.0 for _, (_, y, _) in points) and any(z != 0.0 for _, (_, _, z) in points)
+    for tag, (x, y, z) in points:
+        found.point(tag, [x, z, y] if across else [x, y, z])
     if others and all(shape == "line" for shape, _, _ in found.cells):
         told = ", ".join(f"{name} (first at {place})" for name, place in others.items())
         raise Unreadable(f"it has no plane element, but {told}: use CTRIA3, CTRIA6, CQUAD4, CQUAD8 or the like of plane strain, plane stress or axial symmetry")

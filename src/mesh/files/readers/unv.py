@@ -66,6 +66,7 @@ def unv_cells(found, rows):
         if len(head) < 6:
             raise Unreadable(f"an element begins with {len(head)} integers instead of six")
         label, kind, count = head[0], head[1], head[-1]
+        found.labels.add(label)
         shape = next((shape for shape, kinds in UNV_PLANE.items() if kind in kinds), None)
         # Beams have a line for their orientation.
         if kind in (21, 22, 23, 24) or (kind == 11 and at < len(rows) and len(unv_ints(rows[at])) == 3):
@@ -107,8 +108,11 @@ def unv_groups(found, number, rows):
             at += 1
         if len(entities) < width * head[-1]:
             raise Unreadable(f"group '{name}' has fewer members than the {head[-1]} it announces")
+        lost = []
         for member in range(0, width * head[-1], width):
             kind, tag = entities[member:member + 2]
+            if tag not in {7: found.index, 8: found.labels}.get(kind, (tag,)):
+                lost.append(f"{'node' if kind == 7 else 'element'} {tag}")
             if kind == 7:
                 found.node_sets.setdefault(name, []).append(tag)
             elif kind == 8:
@@ -117,11 +121,14 @@ def unv_groups(found, number, rows):
                 if at_cell is not None:
                     dimension = 1 if found.cells[at_cell][0] == "line" else 2
                     found.numbers.setdefault((dimension, head[0]), name)
+        if lost:
+            more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
+            found.notes.append(f"group '{name}' has {lost[0]}{more}, which the file does not have: it is without it")
 
 
 def read_unv(source):
     found = Found("UNV")
-    found.properties = {}
+    found.properties, found.labels = {}, set()
     datasets = list(unv_datasets(lines_of(source)))
     if not datasets:
         raise Unreadable("it has no dataset between lines of -1")
