@@ -24,7 +24,8 @@ fn reported(scene: &str, field: &str) -> (i32, Value) {
     let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/claims");
     let folder = tempfile::tempdir().expect("a folder");
     let mut command = hypercircle(folder.path(), ["certify"]);
-    command.arg(inputs.join(format!("{scene}.toml"))).arg("--displacement").arg(inputs.join(format!("{field}.vtu")));
+    let field = if field.contains('.') { field.to_string() } else { format!("{field}.vtu") };
+    command.arg(inputs.join(format!("{scene}.toml"))).arg("--displacement").arg(inputs.join(field));
     let output = run({
         command.args(["--solution", "--quiet", "--out", "out"]);
         command
@@ -100,5 +101,25 @@ fn any_rule_of_full_integration_will_do_on_bodies_of_revolution() {
 fn a_gap_that_bends_within_an_edge_is_closed_at_the_nodes() {
     for scene in ["kinked", "kinked_quadratic"] {
         assert_eq!(claimed(scene, scene), (0, Vec::new()), "{scene}");
+    }
+}
+
+#[test]
+fn node_data_belong_to_the_nodes_that_they_name() {
+    assert_eq!(claimed("tagged", "tagged_rows.msh"), (0, Vec::new()));
+    let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/claims");
+    let text = std::fs::read_to_string(inputs.join("tagged_rows.msh")).expect("readable");
+    let folder = tempfile::tempdir().expect("a folder");
+    for (row, found) in
+        [("\n99 0.0 0.0 0\n", "node 99, which is not among its nodes"), ("\n11 0.0 0.0 0\n", "two rows for node 11")]
+    {
+        let wrong = text.replacen("\n12 0.0 0.0 0\n", row, 1);
+        assert_ne!(wrong, text);
+        std::fs::write(folder.path().join("wrong.msh"), wrong).expect("writable");
+        let mut command = hypercircle(folder.path(), ["certify"]);
+        command.arg(inputs.join("tagged.toml")).args(["--displacement", "wrong.msh", "--solution"]);
+        let output = run(command);
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        assert!(said(&output).split_whitespace().collect::<Vec<_>>().join(" ").contains(found), "{}", said(&output));
     }
 }

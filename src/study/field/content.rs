@@ -22,6 +22,7 @@ const SCRIPT: &str = concat!(
     include_str!("../../mesh/files/readers/dat.py"),
     include_str!("../../mesh/files/readers/choose.py"),
     include_str!("own.py"),
+    include_str!("node_data.py"),
     include_str!("read.py")
 );
 const INSTEAD: &str = "write it as VTU, with triangles or quadrilaterals and the displacement as point data";

@@ -41,7 +41,7 @@ def read():
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            mesh = read_with_meshio(source, target)
+            mesh = read_with_meshio(by_node(source, target), target)
     except ModuleNotFoundError as error:
         missing(error)
     except Unreadable as error:

@@ -126,6 +126,8 @@ fn energy(e: &DisplacementElement) -> Result<Measured, Fault> {
     Ok(Measured::new(value, allowed, sentence))
 }
 
+/// By how much the products are larger than their sum in an element that is not thin, at most.
+const WELL_SHAPED: f64 = 10.0;
 /// Nothing is told from a matrix in which this part of what constant strains store is rounding.
 const TOO_THIN: f64 = 1e-3;
 
@@ -134,7 +136,7 @@ const TOO_THIN: f64 = 1e-3;
 fn allowed(e: &DisplacementElement, exact: &Matrix3<f64>) -> Result<f64, Fault> {
     let u = strains(&e.nodes).abs();
     let size = u.tr_mul(&(e.matrix.abs() * &u)).amax() / (e.outline.area * exact.amax());
-    let allowed = e.precision * size.max(1.0);
+    let allowed = e.precision * (size / WELL_SHAPED).max(1.0);
     if allowed > TOO_THIN {
         return Err(Fault::NotMade(
             "the element is so thin that rounding of the entries hides its constant strains".into(),

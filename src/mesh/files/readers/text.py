@@ -28,6 +28,8 @@ def read_freefem(source):
             *nodes, label = [int(word) for word in words[at:at + corners + 1]]
             found.cell(shape, nodes, [found.number(dimension, label, {})])
             at += corners + 1
+    if at < len(words):
+        raise Unreadable(f"it has {len(words) - at} numbers more than the {counts[0]} vertices, {counts[1]} triangles and {counts[2]} edges that it announces")
     return found
 
 
