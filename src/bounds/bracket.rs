@@ -87,9 +87,10 @@ impl Bracket {
     ) -> Self {
         let lower = LowerTerms::new(problem, &dual.stress, &dual.moments, Counted::ALL);
         let floor = lower.complementary.lower();
-        let made = yielded(problem, dual).and_then(|(wider, stored)| {
+        let made = ground.and_then(|ground| {
+            let (wider, stored) = yielded(problem, dual, &ground);
             let ground = match &wider {
-                Cow::Borrowed(_) => ground?,
+                Cow::Borrowed(_) => ground,
                 Cow::Owned(wider) => Groundwork::new(wider, dual.moments.iter().map(|moments| moments.len() - 1))?,
             };
             admissible_on(ground, &wider, dual, floor - problem.scene.thickness * stored, start, keep)

@@ -67,6 +67,11 @@ impl Problem {
         material.with_initial(kinematics, &body.elasticity, &body.initial)
     }
 
+    /// The first of the notes for which bounds are not guaranteed for the scene as it is written.
+    pub fn weakened(&self) -> Option<&Note> {
+        self.notes.iter().find(|note| note.weakens_guarantee)
+    }
+
     /// The body force on triangle `t`.
     pub fn body_force(&self, t: usize) -> &BodyForce {
         &self.scene.bodies[self.mesh.body[t]].body_force
@@ -246,6 +251,13 @@ pub struct ContactPair {
     pub friction: Option<Friction>,
     /// Force per area and penetration beyond the gap of an elastic contact; `None` where nothing penetrates.
     pub stiffness: Option<f64>,
+}
+
+impl ContactPair {
+    /// The vertex that both sides share at one end of the pair: the tip of a crack, or where a rigid bond begins.
+    pub fn shared(&self, end: usize) -> Option<usize> {
+        self.second.map(|second| second[end]).filter(|v| *v == self.first[end])
+    }
 }
 
 /// A constraint u(vertex) · direction = 0 that removes a rigid motion which neither supports nor contacts hold.

@@ -146,7 +146,7 @@ pub fn quantity_checks(
 
 /// Why an interval says nothing of the scene as it is written, where it does not.
 fn of_another_scene(certified: &Certified) -> Option<String> {
-    let note = certified.problem.notes.iter().find(|note| note.weakens_guarantee)?;
+    let note = certified.problem.weakened()?;
     Some(format!("The interval is not guaranteed for the scene as it is written: {}.", note.text))
 }
 

@@ -18,6 +18,7 @@ mod cracks;
 mod curve_remarks;
 mod curved_adaptive;
 mod curved_contact;
+mod damaged_meshes;
 mod degrees;
 mod diagnosis_of_nothing;
 mod drafts;

@@ -273,8 +273,7 @@ impl Solution<'_> {
         }
         let total = self.applied().max(self.larger * self.carried(interface));
         let share = |force: f64| if total > 0.0 { force / total } else { force };
-        let rounding = self.of_displacements(1.0);
-        let open = -2.0 * (SOLVER + rounding.digits.min(rounding.ceiling)) * self.reference;
+        let open = -self.sticks_below();
         let (mut forces, distances) = self.sites.in_coefficients(&self.pressing, &self.excess);
         let own = || (0..self.pressing.len()).filter(|s| self.sites.list[*s].interface == interface);
         own().filter(|s| self.is_support(*s)).for_each(|s| forces[s] = 0.0);

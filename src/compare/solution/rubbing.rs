@@ -53,7 +53,7 @@ pub enum Ask {
 }
 
 impl Solution<'_> {
-    /// Jumps along the contact below which the sides stick.
+    /// Jumps below which sides stick along a contact, or touch across it.
     pub fn sticks_below(&self) -> f64 {
         let rounding = self.of_displacements(1.0);
         2.0 * (SOLVER + rounding.digits.min(rounding.ceiling)) * self.reference

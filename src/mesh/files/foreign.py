@@ -127,7 +127,7 @@ def from_gmsh(source):
 
 
 def checked(found):
-    """The same, or a refusal that names the node or the cell at which it is no mesh."""
+    """The same, or a refusal that names the node or the cell at which it is no mesh; readers of this program look for themselves."""
     for number, point in enumerate(found["points"], 1):
         if not all(map(math.isfinite, point)):
             refuse(f"node {number} has a coordinate that is no finite number")
@@ -147,7 +147,7 @@ def main():
         found = read_own(source, reader).mesh()
     elif any(source.lower().endswith(suffix) for suffix in ONLY_GMSH):
         try:
-            found = from_gmsh(source)
+            found = checked(from_gmsh(source))
         except ModuleNotFoundError:
             print("gmsh", file=sys.stderr)
             sys.exit(45)
@@ -158,14 +158,14 @@ def main():
             print(error, file=sys.stderr)
             sys.exit(44)
         try:
-            found = from_meshio(source, target)
+            found = checked(from_meshio(source, target))
         except ModuleNotFoundError as error:
             print(error.name, file=sys.stderr)
             sys.exit(45)
         except Unreadable as error:
             refuse(str(error))
     with open(target, "w", encoding="utf-8") as out:
-        json.dump(checked(found), out)
+        json.dump(found, out)
 
 
 main()

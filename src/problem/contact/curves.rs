@@ -143,13 +143,7 @@ pub(in crate::problem) fn remark(problem: &mut Problem) {
     const BEGINS: &str = "arcs of [geometry]: ";
     let mut found = Curved::default();
     arcs(problem, &mut found);
-    let off = |(e, circle): (&usize, &Circle)| {
-        let [a, b] = problem.mesh.edges[*e].vertices.map(|v| problem.mesh.points[v]);
-        let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-        let on = circle.nearest(middle);
-        (on[0] - middle[0]).hypot(on[1] - middle[1])
-    };
-    let farthest = found.iter().map(off).fold(0.0, f64::max);
+    let farthest = found.iter().map(|(e, circle)| beside(problem, *e, circle)).fold(0.0, f64::max);
     if farthest == 0.0 {
         return;
     }
@@ -176,13 +170,17 @@ fn scene_arcs(scene: &Scene) -> Vec<(&str, Circle, [[f64; 2]; 2])> {
     all.collect()
 }
 
-/// True if the triangles at an edge stay well shaped when its midpoint moves onto the circle.
-fn has_room(problem: &Problem, e: usize, circle: &Circle) -> bool {
-    let mesh = &problem.mesh;
-    let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
+/// The distance of the middle of an edge from the circle.
+fn beside(problem: &Problem, e: usize, circle: &Circle) -> f64 {
+    let [a, b] = problem.mesh.edges[e].vertices.map(|v| problem.mesh.points[v]);
     let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
     let to = circle.nearest(middle);
-    let moved = (to[0] - middle[0]).hypot(to[1] - middle[1]);
+    (to[0] - middle[0]).hypot(to[1] - middle[1])
+}
+
+/// True if the triangles at an edge stay well shaped when its midpoint moves onto the circle.
+fn has_room(problem: &Problem, e: usize, circle: &Circle) -> bool {
+    let (mesh, moved) = (&problem.mesh, beside(problem, e, circle));
     let (length, _) = mesh.edge_frame(e);
     mesh.edges[e].triangles.iter().flatten().all(|&t| moved <= ROOM * 2.0 * mesh.area(t) / length)
 }

@@ -260,11 +260,8 @@ impl Search<'_, '_> {
 
 /// True if both sides of a contact share one vertex at this place of the scene as written.
 fn is_tip(problem: &Problem, place: [f64; 2]) -> bool {
-    let shared = problem.pairs().flat_map(|pair| {
-        let second = pair.second;
-        (0..2).filter_map(move |end| second.filter(|second| second[end] == pair.first[end]).map(|second| second[end]))
-    });
-    shared.into_iter().any(|v| problem.scene.as_written(problem.mesh.points[v]) == place)
+    let mut shared = problem.pairs().flat_map(|pair| (0..2).filter_map(|end| pair.shared(end)));
+    shared.any(|v| problem.scene.as_written(problem.mesh.points[v]) == place)
 }
 
 /// The ratios that were tried for one end, and the best of what they gave.

@@ -1,10 +1,11 @@
 //! Where the tip of a crack is on a mesh, and the triangles about it.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use crate::problem::{Condition, Problem};
 use crate::quantity::point::distance;
 use crate::scene::Mode;
+use crate::sets::DisjointSets;
 
 /// Part of the radius up to which η is one.
 const INNER: f64 = 0.3;
@@ -183,7 +184,7 @@ impl Place {
             };
         let like_a_face = outline.iter().copied().filter(|&e| along(e, face) && (free(e) || touches(problem, e, mode)));
         // Beyond the other end of the crack the body is whole, and has other cracks perhaps.
-        let faces = connected(problem, like_a_face.collect(), vertex);
+        let faces = connected(problem, &like_a_face.collect::<Vec<_>>(), vertex);
         let role = |e: usize| {
             if faces.contains(&e) {
                 Role::Face
@@ -273,17 +274,12 @@ impl Place {
 }
 
 /// Those of `edges` from which a way along them leads to `vertex`.
-fn connected(problem: &Problem, edges: Vec<usize>, vertex: usize) -> HashSet<usize> {
-    let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
-    for &e in &edges {
-        problem.mesh.edges[e].vertices.into_iter().for_each(|v| at.entry(v).or_default().push(e));
-    }
-    let (mut found, mut next) = (HashSet::new(), vec![vertex]);
-    while let Some(v) = next.pop() {
-        let new: Vec<usize> = at.remove(&v).into_iter().flatten().filter(|e| found.insert(*e)).collect();
-        next.extend(new.into_iter().flat_map(|e| problem.mesh.edges[e].vertices));
-    }
-    found
+fn connected(problem: &Problem, edges: &[usize], vertex: usize) -> HashSet<usize> {
+    let mut sets = DisjointSets::new(problem.mesh.points.len());
+    let ends = |e: usize| problem.mesh.edges[e].vertices;
+    edges.iter().for_each(|&e| sets.join(ends(e)[0], ends(e)[1]));
+    let root = sets.root(vertex);
+    edges.iter().copied().filter(|&e| sets.root(ends(e)[0]) == root).collect()
 }
 
 /// True if an edge is one side of a frictionless contact across which w of this mode does not jump.

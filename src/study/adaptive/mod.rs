@@ -365,7 +365,7 @@ fn stopped(reason: &Stop, row: &HistoryRow, goal: &Goal, pace: Option<String>) -
 pub fn tolerance_check(certified: &Certified, comparison: &Comparison, tolerance: f64, allow: &Allowances) -> Check {
     const NAME: &str = "bracket/tolerance";
     let allowed = allow.given(NAME).unwrap_or(tolerance);
-    if let Some(note) = certified.problem.notes.iter().find(|note| note.weakens_guarantee) {
+    if let Some(note) = certified.problem.weakened() {
         let why = format!("The bounds are not guaranteed for the scene as it is written: {}.", note.text);
         return Check::not_made(NAME, allowed, Basis::Asked, why);
     }

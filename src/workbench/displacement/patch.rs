@@ -108,10 +108,7 @@ fn energy(e: &DisplacementElement) -> Result<Measured, Fault> {
     };
     let exact = material.hooke() * material.thickness;
     let value = energy_off(&e.matrix, &e.nodes, &e.outline, &material);
-    let allowed = allowed(e, &exact)?;
-    if value > allowed {
-        refuse_irregular(e)?;
-    }
+    let allowed = allowed(e, value, &exact)?;
     let sentence = if value <= allowed {
         "Constant strains store what they must".to_string()
     } else {
@@ -132,8 +129,9 @@ const WELL_SHAPED: f64 = 10.0;
 const TOO_THIN: f64 = 1e-3;
 
 /// What rounding of the entries may change of the energies of constant strains, relative to the largest: in a thin element they are small
-/// differences of large products.
-fn allowed(e: &DisplacementElement, exact: &Matrix3<f64>) -> Result<f64, Fault> {
+/// differences of large products. A larger `value` says nothing of an element whose area and traces its nodes do not tell, which are read
+/// off them as if its sides were straight and their nodes evenly spaced.
+fn allowed(e: &DisplacementElement, value: f64, exact: &Matrix3<f64>) -> Result<f64, Fault> {
     let u = strains(&e.nodes).abs();
     let size = u.tr_mul(&(e.matrix.abs() * &u)).amax() / (e.outline.area * exact.amax());
     let allowed = e.precision * (size / WELL_SHAPED).max(1.0);
@@ -142,13 +140,8 @@ fn allowed(e: &DisplacementElement, exact: &Matrix3<f64>) -> Result<f64, Fault> 
             "the element is so thin that rounding of the entries hides its constant strains".into(),
         ));
     }
-    Ok(allowed)
-}
-
-/// The area and the traces of an element are read off its nodes as if its sides were straight, and their nodes evenly spaced.
-fn refuse_irregular(e: &DisplacementElement) -> Result<(), Fault> {
-    if e.outline.is_regular(&e.nodes) {
-        return Ok(());
+    if value <= allowed || e.outline.is_regular(&e.nodes) {
+        return Ok(allowed);
     }
     Err(Fault::NotMade(
         "nodes of its sides are not evenly spaced on straight lines: what constant strains do depends on the curve, or on the coordinate, \
@@ -164,10 +157,7 @@ fn forces(e: &DisplacementElement) -> Result<Measured, Fault> {
         None => (seen, "that its energies show"),
     };
     let value = forces_off(&e.matrix, &e.nodes, &e.outline, &hooke);
-    let allowed = allowed(e, &hooke)?;
-    if value > allowed {
-        refuse_irregular(e)?;
-    }
+    let allowed = allowed(e, value, &hooke)?;
     let sentence = match value <= allowed {
         true => format!("Nodal forces of constant strains are those of the stress {of}"),
         false if e.material.is_some() && forces_off(&e.matrix, &e.nodes, &e.outline, &seen) <= allowed => {

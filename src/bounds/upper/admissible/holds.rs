@@ -186,9 +186,9 @@ pub fn supports_agree(problem: &Problem) -> Result<(), NoUpperBound> {
             let Some((by, size)) = forced(pair, end, &holds) else { continue };
             if by > jump_rounding(problem, pair, size) {
                 let [x, y] = problem.scene.as_written(problem.mesh.points[pair.first[end]]);
-                return Err(match is_one(pair, end) {
-                    true => NoUpperBound::PressedInside { x, y, by },
-                    false => NoUpperBound::ForcedPenetration { x, y, by },
+                return Err(match pair.shared(end) {
+                    Some(_) => NoUpperBound::PressedInside { x, y, by },
+                    None => NoUpperBound::ForcedPenetration { x, y, by },
                 });
             }
         }
@@ -199,7 +199,7 @@ pub fn supports_agree(problem: &Problem) -> Result<(), NoUpperBound> {
 /// The penetration at one end of a pair, and the size of the displacements that it comes from, where supports leave it no choice, or the
 /// body that the contact ends in.
 pub fn forced(pair: &ContactPair, end: usize, holds: &[Hold]) -> Option<(f64, f64)> {
-    if is_one(pair, end) {
+    if pair.shared(end).is_some() {
         return Some((-pair.gap[end], 0.0));
     }
     let n = pair.direction.ends[end];
@@ -211,11 +211,6 @@ pub fn forced(pair: &ContactPair, end: usize, holds: &[Hold]) -> Option<(f64, f6
     let second = pair.second.map_or(Some([0.0; 2]), |s| held(s[end]))?;
     let by = (first[0] - second[0]) * n[0] + (first[1] - second[1]) * n[1] - pair.gap[end];
     Some((by, first.iter().chain(&second).fold(0.0_f64, |m, u| m.max(u.abs()))))
-}
-
-/// True where both sides of a contact are one point: at the tip of a crack, or where a rigid bond begins.
-fn is_one(pair: &ContactPair, end: usize) -> bool {
-    pair.second.is_some_and(|second| second[end] == pair.first[end])
 }
 
 /// Penetrations smaller than this, relative to the displacements they come from, are rounding.

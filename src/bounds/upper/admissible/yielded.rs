@@ -8,23 +8,19 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use super::holds::{Hold, forced, holds, jump_rounding};
+use super::holds::{Hold, forced, jump_rounding};
 use crate::bounds::springs::spring_tractions;
-use crate::bounds::upper::NoUpperBound;
+use crate::bounds::upper::Groundwork;
 use crate::dual::DualSolution;
 use crate::element::polynomial::side;
 use crate::problem::{BedPair, ContactPair, EdgeWeight, Problem};
 
 /// `problem` with rigid contacts that have yielded in the place of stiff elastic ones, and the energy ½ ∫ k s² of these, per unit
-/// thickness.
-///
-/// # Errors
-/// [`NoUpperBound::SupportsDisagree`].
-pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> Result<(Cow<'a, Problem>, f64), NoUpperBound> {
+/// thickness; `ground` knows the supports.
+pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution, ground: &Groundwork) -> (Cow<'a, Problem>, f64) {
     if !problem.has_elastic_contact() {
-        return Ok((Cow::Borrowed(problem), 0.0));
+        return (Cow::Borrowed(problem), 0.0);
     }
-    let held = holds(problem)?.vertices;
     let (mut wider, mut stored) = (problem.clone(), 0.0);
     for (index, interface) in problem.interfaces.iter().enumerate() {
         if !interface.pairs.iter().any(|pair| is_stiff(problem, pair)) {
@@ -38,7 +34,7 @@ pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> Result<(Cow<'a,
             }
         }
         let mean = |v: usize| at.get(&v).map_or(0.0, |all| all.iter().sum::<f64>() / all.len() as f64);
-        let least = pressed(problem, &interface.pairs, &held);
+        let least = pressed(problem, &interface.pairs, &ground.holds.vertices);
         for pair in &mut wider.interfaces[index].pairs {
             let Some(k) = pair.stiffness.take() else { continue };
             let s = pair.first.map(|v| mean(v).max(least.get(&v).copied().unwrap_or(0.0)));
@@ -47,7 +43,7 @@ pub fn yielded<'a>(problem: &'a Problem, dual: &DualSolution) -> Result<(Cow<'a,
             stored += 0.5 * k * pair.length * side::integral(&s, &weight.times(&s));
         }
     }
-    Ok((Cow::Owned(wider), stored))
+    (Cow::Owned(wider), stored)
 }
 
 /// What the contact yields at least, by vertex of its first side: how far supports press it there.

@@ -2,8 +2,8 @@
 //!
 //! Its test functions are those of the file. Whatever the method, mortar, node to segment or quadrature, contact is a pressure
 //! λ ≥ 0 along the direction of contact, the same on both sides: on the parts of edges between the vertices of either side, the work of
-//! λ on the jump is that of forces ≥ 0 on its Bernstein coefficients there, or at the nodes of the file. The part of the nodal forces that such forces cannot balance
-//! is the residual; the energy identity checks that they do no work on the opening. A method may decide if contact is closed at the nodes
+//! λ on the jump is that of forces ≥ 0 on its Bernstein coefficients there, or at the nodes of the file. The part of the nodal forces that
+//! such forces cannot balance is the residual; the energy identity checks that they do no work on the opening. A method may decide if contact is closed at the nodes
 //! of one side, or in the mean with the functions of one side, plain or dual, or edge by edge: the least penetration among these counts.
 
 mod forces;
