@@ -111,8 +111,10 @@ impl Solution {
     #[getter]
     fn quantities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let Solved { run, comparison, answers } = &self.solved;
-        let guaranteed = !run.certified.problem.notes.iter().any(|note| note.weakens_guarantee);
-        let firmness = report::firmness(guaranteed, run.coulomb.is_some());
+        let problem = &run.certified.problem;
+        let guaranteed = !problem.notes.iter().any(|note| note.weakens_guarantee);
+        let data = report::Data::of(run.coulomb.is_some(), !problem.scene.ranges.is_empty());
+        let firmness = report::firmness(guaranteed, data);
         let out = PyDict::new(py);
         for summary in summaries(&run.certified, answers, comparison) {
             let name = summary.name.clone();

@@ -172,25 +172,29 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
 
 /// All that is held against the residual, with terms to be fitted put into `terms`.
 fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
-    if space.problem().section().is_revolved() {
+    let revolved = space.problem().section().is_revolved();
+    if revolved {
         mistakes::turned::terms(space, terms);
-        let own = mistakes::turned::trials(space).into_iter().chain(mistakes::sampled::trials(space));
-        return own.chain(mistakes::contact::trials(space)).collect();
+    } else {
+        mistakes::material::terms(space, terms);
+        mistakes::initial::terms(space, terms);
     }
-    mistakes::material::terms(space, terms);
-    mistakes::initial::terms(space, terms);
     mistakes::loads::terms(space, terms);
     mistakes::springs::terms(space, terms);
     let mut trials = mistakes::values::trials(space);
-    trials.extend(mistakes::shift::trial(space, |_| vec![[0.0; 2]; space.count()]));
-    trials.extend(mistakes::material::trials(space));
-    trials.extend(mistakes::anisotropic::trials(space));
-    trials.extend(mistakes::layer::trials(space));
-    trials.extend(mistakes::moved::trial(space));
-    trials.extend(mistakes::lumped::trials(space));
+    if revolved {
+        trials.extend(mistakes::turned::trials(space));
+    } else {
+        trials.extend(mistakes::shift::trial(space, |_| vec![[0.0; 2]; space.count()]));
+        trials.extend(mistakes::material::trials(space));
+        trials.extend(mistakes::anisotropic::trials(space));
+        trials.extend(mistakes::layer::trials(space));
+        trials.extend(mistakes::moved::trial(space));
+        trials.extend(mistakes::lumped::trials(space));
+        trials.extend(mistakes::integration::trials(space));
+    }
     trials.extend(mistakes::sampled::trials(space));
     trials.extend(mistakes::local::trials(space));
-    trials.extend(mistakes::integration::trials(space));
     trials.extend(mistakes::contact::trials(space));
     trials.extend(mistakes::springs::trials(space));
     trials.extend(mistakes::loads::trials(space));

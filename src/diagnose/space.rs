@@ -1,8 +1,8 @@
 //! Nodal forces of parts of a model, as columns that can be held against the residual.
 
-use crate::bounds::Cell;
+use crate::bounds::{Cell, Hold};
 use crate::compare::Solution;
-use crate::compare::forces::cells;
+use crate::compare::forces::{cells, turned};
 use crate::elasticity::Elasticity;
 use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
@@ -199,6 +199,31 @@ impl<'a> Space<'a> {
         }
     }
 
+    /// Nodal forces of the stresses of the bodies as the scene has them for displacements `value`: of the given triangles, or of all.
+    pub fn own_forces(&self, of: Option<&[usize]>, value: impl Fn(usize) -> [f64; 2]) -> Vec<[f64; 2]> {
+        let (problem, solution) = (self.problem(), self.solution);
+        let mut forces = vec![[0.0; 2]; self.count()];
+        let Some(rule) = solution.rule else {
+            let all = 0..if of.is_some() { 0 } else { problem.mesh.triangles.len() };
+            for t in of.into_iter().flatten().copied().chain(all) {
+                let moduli = Moduli::of_body(problem, &problem.scene.bodies[problem.mesh.body[t]]);
+                self.add_element(t, moduli, &value, |node, f| (0..2).for_each(|c| forces[node][c] += f[c]));
+            }
+            return forces;
+        };
+        let materials = problem.materials();
+        let counted = |t: usize| of.is_none_or(|of| of.contains(&t));
+        turned::points_of(problem, solution.candidate, rule, counted, |at| {
+            let values: Vec<[f64; 2]> = at.nodes.iter().map(|n| value(*n)).collect();
+            let stress = materials[at.body].revolved().stress(at.with(&values).strain().0);
+            for (i, &node) in at.nodes.iter().enumerate() {
+                let own = at.force(i, stress);
+                (0..2).for_each(|c| forces[node][c] += at.weight * at.radius * own[c]);
+            }
+        });
+        forces
+    }
+
     /// The column of what stresses with the constants `moduli`, body by body, ask for: those of the strains without the initial ones.
     pub fn stiffness(&self, moduli: impl Fn(usize) -> Option<Moduli>) -> Vec<f64> {
         let mut column = self.stiffness_on(&moduli, |node| self.solution.candidate.value(node));
@@ -259,6 +284,19 @@ impl<'a> Space<'a> {
             self.add_element(t, moduli, &value, |node, f| (0..2).for_each(|c| forces[node][c] += f[c]));
         }
         self.column(forces)
+    }
+
+    /// What a model that is no longer this one leaves is held against: the squared residual, and no more than that of the loads and initial
+    /// strains where nothing else moves the bodies. What leaves as much as these are explains nothing.
+    pub fn whole(&self) -> f64 {
+        let is_moved = (0..self.count()).any(|node| match self.solution.hold(node) {
+            Hold::Free => false,
+            Hold::Line { value, .. } => value != 0.0,
+            Hold::Fixed(value) => value != [0.0; 2],
+        });
+        let forces = &self.solution.forces;
+        let driven: f64 = [self.column(forces.applied()), self.column(forces.initial.clone())].iter().flatten().map(|f| f * f).sum();
+        if is_moved || driven == 0.0 { self.square } else { self.square.min(driven) }
     }
 
     /// Part of the squared residual that is left with `change` added to the residual.

@@ -27,7 +27,7 @@ pub use folder::stored::*;
 pub use folder::write::{NAMES, ReportError, write};
 pub(crate) use html::CSS;
 pub use html::page;
-pub use quantity::firmness;
+pub use quantity::{Data, firmness};
 pub use text::csv::{tables, tables_of};
 pub use text::json::{json, schema};
 pub use text::junit::junit;

@@ -178,16 +178,39 @@ impl QuantitySummary {
 impl Report {
     /// How firmly intervals hold, before "within".
     pub fn firmness(&self) -> &'static str {
-        firmness(self.is_guaranteed(), self.coulomb.is_some())
+        firmness(self.is_guaranteed(), Data::of(self.coulomb.is_some(), self.data_range.is_some()))
     }
 }
 
-/// As [`Report::firmness`], of a problem whose notes leave the guarantee or not, with Coulomb friction or without.
-pub fn firmness(guaranteed: bool, coulomb: bool) -> &'static str {
-    match (guaranteed, coulomb) {
+/// The data that intervals are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Data {
+    /// Those of the scene.
+    Whole,
+    /// Those with the friction bound that was found.
+    OfBound,
+    /// One end of each range of the scene.
+    OfEnds,
+}
+
+impl Data {
+    /// Those of a scene with Coulomb friction, or with ranges, or with neither.
+    pub fn of(coulomb: bool, ranges: bool) -> Self {
+        match (coulomb, ranges) {
+            (true, _) => Data::OfBound,
+            (false, true) => Data::OfEnds,
+            (false, false) => Data::Whole,
+        }
+    }
+}
+
+/// As [`Report::firmness`], of a problem whose notes leave the guarantee or not.
+pub fn firmness(guaranteed: bool, data: Data) -> &'static str {
+    match (guaranteed, data) {
         (false, _) => "indicated",
-        (true, true) => "for the friction bound that was found guaranteed",
-        (true, false) => "guaranteed",
+        (true, Data::OfBound) => "for the friction bound that was found guaranteed",
+        (true, Data::OfEnds) => "for the ends of the ranges with the lowest energy guaranteed",
+        (true, Data::Whole) => "guaranteed",
     }
 }
 

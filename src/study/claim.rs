@@ -2,7 +2,7 @@
 
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
 use crate::compare::forces::cells;
-use crate::compare::forces::turned::Rule;
+use crate::compare::forces::turned::Kind;
 use crate::compare::{
     ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution,
 };
@@ -111,19 +111,32 @@ pub fn claim_before_contact(
     Ok(Claim { checks, diagnosis: None, residual: solution.by_triangle(), notes: Vec::new() })
 }
 
+/// The part of the squared residual that a diagnosis explains, beyond which no other rule of integration is tried.
+const EXPLAINED: f64 = 1.0 - 1e-8;
+
+/// A rule of integration that leaves more than this many times the residual of the best one is not that of a program whose field this is.
+const FAR: f64 = 10.0;
+
 /// The best explanation of a field: on quadrilaterals by whichever rule its program may have used.
 fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracket: &Bracket) -> Option<Diagnosis> {
     let energies = energies(problem, judged);
     let own = diagnose(solution, energies);
     let is_explained = |found: &Option<Diagnosis>| found.as_ref().is_none_or(|d| d.explained.is_none_or(|e| e > 0.0));
-    if problem.section().is_revolved() {
+    if let Some(rule) = solution.rule {
+        let share = |found: &Diagnosis| found.explained.unwrap_or(0.0);
+        if own.as_ref().is_some_and(|own| share(own) > EXPLAINED) {
+            return own;
+        }
         // The rule with which a wrong field fits best need not be that of its program, with which one mistake explains all.
-        let others = Rule::all(&judged.candidate).into_iter().filter(|rule| Some(*rule) != solution.rule);
+        let kinds = [Kind::Triangles, Kind::Quadrilaterals].into_iter();
+        let others = kinds.flat_map(|kind| rule.others(problem, &judged.candidate, kind)).filter(|other| *other != rule);
         let by = |rule| {
             let other = Solution::turned(problem, &judged.candidate, rule).ok()?.within(Extent::of(problem, bracket));
+            if other.residual() > FAR * solution.residual() {
+                return None;
+            }
             diagnose(&other, energies)
         };
-        let share = |found: &Diagnosis| found.explained.unwrap_or(0.0);
         let best = others.filter_map(by).max_by(|a, b| share(a).total_cmp(&share(b)));
         return match (own, best) {
             (Some(own), Some(best)) if share(&best) > share(&own) => Some(best),

@@ -7,6 +7,7 @@ use crate::bounds::Bracket;
 use crate::compare::{Allowances, Basis, Check, Comparison, Judged, weighted_reactions};
 use crate::problem::{Problem, Scales};
 use crate::quantity::{Form, Interval};
+use crate::report::text::number::significant;
 use crate::report::{QuantityOfModel, QuantitySummary};
 
 /// How far, in units of what its own energy leaves open, the value of a displacement model may lie outside an interval.
@@ -14,6 +15,12 @@ const OWN_ERROR: f64 = 2.0;
 
 /// Error that solvers leave in a value, relative to the size of such a quantity.
 const SOLVED: f64 = 1e-8;
+
+/// A half-width beyond this part of the value tells no value.
+const NO_VALUE: f64 = 1.0;
+
+/// Of the size of a quantity that the data can cause, the part that is not zero.
+const PART_OF_ALL: f64 = 0.1;
 
 /// A value of a quantity that comes without a field.
 #[derive(Debug, Clone, PartialEq)]
@@ -150,17 +157,34 @@ fn of_another_scene(certified: &Certified) -> Option<String> {
     Some(format!("The interval is not guaranteed for the scene as it is written: {}.", note.text))
 }
 
+/// Why the interval of a quantity tells no right value from a wrong one, where it does not: it is wider than the value, and a substantial
+/// part of all that the data can cause.
+fn of_no_use(answer: &Answer, most: f64) -> Option<String> {
+    let (half, relative) = (answer.interval.half_width(), answer.interval.relative_half_width());
+    (half.is_finite() && relative > NO_VALUE && half > PART_OF_ALL * most).then(|| {
+        format!(
+            "The interval of the {} '{}' is too wide to tell: its half-width is {} times the value. Refine, or give --tolerance-of {}.",
+            answer.kind.name(),
+            answer.name,
+            significant(relative, 3),
+            answer.name
+        )
+    })
+}
+
 /// One check for every value that was given. Outside an interval for another scene than the one that is written it is not judged.
 pub fn value_checks(certified: &Certified, answers: &[Answer], given: &[GivenValue], allow: &Allowances) -> Vec<Check> {
+    let scales = Scales::new(&certified.problem);
     let check = |given: &GivenValue| {
         let name = format!("quantity/{}/given", given.name);
         match answers.iter().find(|answer| answer.name == given.name) {
             Some(answer) if answer.interval.has_an_end() => {
                 let check = inside(&name, answer, given.value, 0.0, "no correct value lies outside");
-                match of_another_scene(certified).filter(|_| !check.passed) {
-                    Some(why) => Check::not_made(&name, 0.0, Basis::Guaranteed, why),
-                    None => check,
-                }
+                let untold = match check.passed {
+                    true => of_no_use(answer, answer.kind.size(&certified.problem, &scales.data)),
+                    false => of_another_scene(certified),
+                };
+                untold.map_or(check, |why| Check::not_made(&name, 0.0, Basis::Guaranteed, why))
             }
             Some(answer) => {
                 let reason = answer.interval.reasons.iter().flatten().next().cloned().unwrap_or_default();

@@ -37,10 +37,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let names = [&args.first, &args.second].map(|path| path.display().to_string());
     let names = [names[0].as_str(), names[1].as_str()];
     if let Some(file) = &args.html {
-        let failed = |e: std::io::Error| {
-            CliError::stopped(Exit::Failed, format!("{} cannot be written: {e}", file.display()), "choose another file")
-        };
-        replace_file(file, page(&found, names).into_bytes()).map_err(failed)?;
+        replace_file(file, page(&found, names).into_bytes()).map_err(|e| CliError::unwritable(file, &e))?;
     }
     // A reader such as `head` may have had enough.
     let _ = text(&found, names).lines().try_for_each(|line| writeln!(std::io::stdout(), "{}", say::shown(line)));

@@ -53,6 +53,9 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let stem = args.file.file_stem().map_or_else(|| "mesh".into(), |name| name.to_string_lossy().into_owned());
     let dir = args.run.folder_named(&format!("mesh-{stem}"));
     folder::refuse(&dir, [PAGE]).map_err(|e| bad(e.to_string(), ""))?;
+    if let Some(path) = &args.scene {
+        folder::refuse_file(path).map_err(|e| CliError::unwritable(path, &e))?;
+    }
     let limit = Duration::try_from_secs_f64(args.reading_seconds).unwrap_or(Duration::MAX);
     let inventory = Inventory::read(&args.file, limit).map_err(|e| bad(e.to_string(), ""))?;
     let target = args.scene.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}.toml")));
@@ -65,7 +68,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         )
     })?;
     folder::replace(&dir, &[(PAGE, page(&inventory, &scene).into_bytes())], &[])
-        .map_err(|e| CliError::unwritable(&dir.join(PAGE), &e))?;
+        .map_err(|e| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
     if let Some(path) = &args.scene {
         replace_file(path, scene.into_bytes()).map_err(|e| CliError::unwritable(path, &e))?;
     }

@@ -1,6 +1,7 @@
 //! Why a command gave no answer.
 
 use std::fmt;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use miette::{Diagnostic, LabeledSpan, SourceCode};
@@ -33,13 +34,18 @@ impl CliError {
         CliError::Stopped { message: message.into(), remedy: remedy.into(), exit }
     }
 
-    /// A result that finds no place.
-    pub fn unwritable(path: &Path, error: &dyn fmt::Display) -> Self {
-        CliError::stopped(
-            Exit::Failed,
-            format!("{} cannot be written: {error}", path.display()),
-            "choose another place",
-        )
+    /// A result that finds no place: bad input where it is the place that was named that cannot be.
+    pub fn unwritable(path: &Path, error: &io::Error) -> Self {
+        let exit = match error.kind() {
+            ErrorKind::NotFound
+            | ErrorKind::NotADirectory
+            | ErrorKind::IsADirectory
+            | ErrorKind::PermissionDenied
+            | ErrorKind::ReadOnlyFilesystem
+            | ErrorKind::InvalidFilename => Exit::BadInput,
+            _ => Exit::Failed,
+        };
+        CliError::stopped(exit, format!("{} cannot be written: {error}", path.display()), "choose another place")
     }
 
     /// The exit code that belongs to it.

@@ -14,7 +14,7 @@ use crate::load::BodyForce;
 use crate::problem::Problem;
 
 /// Points in each direction of a rule that is as good as exact.
-const EXACT: usize = 12;
+pub const EXACT: usize = 12;
 
 /// A point of a rule on the square, with its weight.
 pub type Point = ([f64; 2], f64);

@@ -174,12 +174,15 @@ impl NodalForces {
         self.stiffness.iter().enumerate().map(term).sum::<f64>().sqrt()
     }
 
+    /// The loads, without what initial strains ask for.
+    pub fn applied(&self) -> Vec<[f64; 2]> {
+        self.load.iter().zip(&self.initial).map(|(f, h)| [f[0] - h[0], f[1] - h[1]]).collect()
+    }
+
     /// The sizes of the loads and of the forces of initial strains, each as the root of an energy.
     pub fn energy_sizes(&self) -> [f64; 2] {
-        let loads = self.energy_size(|i| {
-            let [load, initial] = [self.load[i], self.initial[i]];
-            (load[0] - initial[0]).hypot(load[1] - initial[1])
-        });
+        let applied = self.applied();
+        let loads = self.energy_size(|i| applied[i][0].hypot(applied[i][1]));
         [loads, self.energy_size(|i| self.initial[i][0].hypot(self.initial[i][1]))]
     }
 

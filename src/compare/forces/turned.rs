@@ -13,6 +13,7 @@ use crate::element::Material;
 use crate::element::geometry::gradients;
 use crate::element::polynomial::symmetric_rules::symmetric_rules;
 use crate::element::revolved::{NEAR, rule};
+use crate::load::BodyForce;
 use crate::problem::Problem;
 
 /// The polynomial degree up to which the rule that is as good as exact integrates exactly.
@@ -25,31 +26,60 @@ pub struct Rule {
     pub triangles: Option<usize>,
     /// On quadrilaterals the points in each direction.
     pub points: usize,
+    /// True if body forces are integrated as good as exactly, whatever the rule of the stiffness.
+    pub exact_loads: bool,
+}
+
+/// The kinds of cells, each of which a program integrates by a rule of its own.
+#[derive(Debug, Clone, Copy)]
+pub enum Kind {
+    /// Triangles.
+    Triangles,
+    /// Quadrilaterals.
+    Quadrilaterals,
 }
 
 impl Rule {
     /// The rule of FEniCSx as run by this program.
-    pub const OWN: Self = Rule { triangles: Some(0), points: 3 };
+    pub const OWN: Self = Rule { triangles: Some(0), points: 3, exact_loads: false };
 
-    /// The rules that a program may have used for `candidate`.
-    pub fn all(candidate: &Candidate) -> Vec<Self> {
-        let points: Vec<usize> = cells::rules(candidate).into_iter().flatten().collect();
-        let [first, ..] = points[..] else {
-            let triangles = (0..symmetric_rules().len()).map(Some).chain([None]);
-            return triangles.map(|triangles| Rule { triangles, points: 0 }).collect();
+    /// The rules that a program may have used for `candidate` on cells of one kind, with those of this one on the other.
+    pub fn others(self, problem: &Problem, candidate: &Candidate, on: Kind) -> Vec<Self> {
+        let own: Vec<Self> = match on {
+            Kind::Triangles if has_triangles(candidate) => {
+                let mesh = &problem.mesh;
+                let touches = mesh.points.iter().any(|p| problem.section().on_axis(*p));
+                // Points on sides may lie on the axis, where nothing is divided by r.
+                let inside = |rule: &usize| symmetric_rules()[*rule].iter().all(|(at, _)| !at.contains(&0.0));
+                let all = (0..symmetric_rules().len()).filter(|rule| !touches || inside(rule)).map(Some).chain([None]);
+                all.map(|triangles| Rule { triangles, ..self }).collect()
+            }
+            Kind::Triangles => Vec::new(),
+            Kind::Quadrilaterals => {
+                let points: Vec<usize> = cells::rules(candidate).into_iter().flatten().collect();
+                // Close to the axis more points are told apart than in the plane.
+                let more = points.first().into_iter().flat_map(|first| [first + 3, first + 4]);
+                points.iter().copied().chain(more).map(|points| Rule { points, ..self }).collect()
+            }
         };
-        // Close to the axis more points are told apart than in the plane.
-        let points = || points.iter().copied().chain([first + 3, first + 4]);
-        // Beside quadrilaterals triangles are integrated by the rule of their own degree, or as good as exactly.
-        let beside = if first > 2 { [2, 6, 7] } else { [1, 2, 6] };
-        let own = beside.map(Some).into_iter().filter(|_| has_triangles(candidate)).chain([None]);
-        own.flat_map(|triangles| points().map(move |points| Rule { triangles, points })).collect()
+        let loaded = problem.scene.bodies.iter().any(|body| !body.body_force.is_none());
+        let loads = [false, true].into_iter().filter(|exact| loaded || !exact);
+        loads.flat_map(|exact_loads| own.iter().map(move |rule| Rule { exact_loads, ..*rule })).collect()
+    }
+
+    /// That of body forces.
+    fn of_loads(self) -> Self {
+        match self.exact_loads {
+            true => Rule { triangles: None, points: cells::EXACT, ..self },
+            false => self,
+        }
     }
 }
 
 fn has_triangles(candidate: &Candidate) -> bool {
     let covered: usize = candidate.cells.iter().map(|cell| cell.triangles.len()).sum();
-    candidate.numbering.as_ref().is_none_or(|numbering| covered < numbering.triangles.len())
+    candidate.cells.is_empty()
+        || candidate.numbering.as_ref().is_none_or(|numbering| covered < numbering.triangles.len())
 }
 
 /// A displacement model at one point of its rule.
@@ -88,6 +118,11 @@ impl At<'_> {
         (e, spread)
     }
 
+    /// The same point with other displacements of the nodes.
+    pub fn with<'b>(&'b self, values: &'b [[f64; 2]]) -> At<'b> {
+        At { values, ..*self }
+    }
+
     /// As [`Self::strain`], without the initial strain of a material.
     pub fn elastic(&self, material: &Material) -> ([f64; 4], f64) {
         let (e, spread) = self.strain();
@@ -119,12 +154,23 @@ fn shapes(degree: usize, l: [f64; 3], g: &[[f64; 2]; 3]) -> Vec<(f64, [f64; 2])>
 }
 
 /// Calls `each` at every point of the rule, cell by cell.
-pub fn points(problem: &Problem, candidate: &Candidate, by: Rule, mut each: impl FnMut(&At<'_>)) {
+pub fn points(problem: &Problem, candidate: &Candidate, by: Rule, each: impl FnMut(&At<'_>)) {
+    points_of(problem, candidate, by, |_| true, each);
+}
+
+/// As [`points`], on the triangles that are `counted` and the quadrilaterals whose first triangle is.
+pub fn points_of(
+    problem: &Problem,
+    candidate: &Candidate,
+    by: Rule,
+    counted: impl Fn(usize) -> bool,
+    mut each: impl FnMut(&At<'_>),
+) {
     let (mesh, section, thickness) = (&problem.mesh, problem.section(), problem.scene.thickness);
     let vertices = mesh.points.len();
     let of = cells::of_triangles(problem, &candidate.cells);
     let known = by.triangles.map(|rule| &symmetric_rules()[rule]);
-    for t in (0..mesh.triangles.len()).filter(|t| of[*t].is_none()) {
+    for t in (0..mesh.triangles.len()).filter(|t| counted(*t) && of[*t].is_none()) {
         let g = gradients(mesh.corners(t));
         let corners = mesh.corners(t);
         let radii = corners.map(|p| section.weight(p));
@@ -156,7 +202,7 @@ pub fn points(problem: &Problem, candidate: &Candidate, by: Rule, mut each: impl
         }
     }
     for cell in &candidate.cells {
-        let Some(&t) = cell.triangles.first() else { continue };
+        let Some(&t) = cell.triangles.first().filter(|t| counted(**t)) else { continue };
         let values = cell.values(candidate);
         for (at, weight) in cells::rule(by.points) {
             let (gradients, determinant) = cell.field.gradients(at);
@@ -184,11 +230,31 @@ pub fn count(problem: &Problem, candidate: &Candidate) -> usize {
     problem.mesh.points.len() + if candidate.degree == 2 { problem.mesh.edges.len() } else { 0 }
 }
 
+/// Nodal forces of the body force that `of` names for each body.
+pub fn body_forces<'a>(
+    problem: &Problem,
+    candidate: &Candidate,
+    by: Rule,
+    of: impl Fn(usize) -> &'a BodyForce,
+) -> Vec<[f64; 2]> {
+    let section = problem.section();
+    let mut loads = vec![[0.0; 2]; count(problem, candidate)];
+    let pulled = |t: usize| !of(problem.mesh.body[t]).is_none();
+    points_of(problem, candidate, by.of_loads(), pulled, |at| {
+        let force = section.force(of(at.body), at.place);
+        let weight = at.weight * at.radius;
+        for (&node, (value, _)) in at.nodes.iter().zip(at.shapes) {
+            (0..2).for_each(|c| loads[node][c] += weight * value * force[c]);
+        }
+    });
+    loads
+}
+
 /// The forces at the nodes of a displacement of degree 1 or 2, and its energy, by a rule.
 pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForces, Potential) {
     let mut forces = NodalForces::zeros(count(problem, candidate));
     let mut stiffest = vec![0.0; forces.left.len()];
-    let (materials, section) = (problem.materials(), problem.section());
+    let materials = problem.materials();
     let (mut strain, mut rounded) = (0.0, 0.0);
     points(problem, candidate, by, |at| {
         let (material, law) = (&materials[at.body], materials[at.body].revolved());
@@ -197,9 +263,6 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
         let (e, spread) = at.elastic(material);
         let s = law.stress(e);
         strain += 0.5 * weight * law.strain_product(e, e);
-        let ([a, b], [_, axial]) =
-            (section.radial(problem.body_force(at.triangle)), section.forces(problem.body_force(at.triangle)));
-        let force = [a + b * at.radius, axial];
         for (i, (&node, (value, d))) in at.nodes.iter().zip(at.shapes).enumerate() {
             let (long, hoop) = (d[0].hypot(d[1]), value / at.radius);
             let own = at.force(i, s);
@@ -210,7 +273,6 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
             if part > stiffest[node] {
                 (stiffest[node], forces.triangle[node]) = (part, at.triangle);
             }
-            (0..2).for_each(|c| forces.load[node][c] += weight * value * force[c]);
         }
         if !material.initial().is_none() {
             let held = law.stress(material.initial().around(at.place));
@@ -220,6 +282,7 @@ pub fn forces(problem: &Problem, candidate: &Candidate, by: Rule) -> (NodalForce
             }
         }
     });
+    forces.load = body_forces(problem, candidate, by, |body| &problem.scene.bodies[body].body_force);
     forces.add_tractions(problem, candidate.degree, Functions::Values);
     let springs = forces.add_springs(problem, candidate.degree, Functions::Values, |node| candidate.value(node));
     forces.take_loads();

@@ -24,7 +24,7 @@ use super::candidate::Candidate;
 use super::forces::NodalForces;
 use super::forces::cells;
 use super::forces::turned;
-use super::forces::turned::Rule;
+use super::forces::turned::{Kind, Rule};
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
 use crate::element::Material;
 use crate::problem::{Problem, ROUND_OFF};
@@ -132,10 +132,7 @@ impl<'a> Solution<'a> {
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn new(problem: &'a Problem, candidate: &'a Candidate, strain: f64) -> Result<Self, NoUpperBound> {
         if problem.section().is_revolved() {
-            let made = |rule| Self::turned(problem, candidate, rule);
-            let tried = Rule::all(candidate).into_iter().map(made).collect::<Result<Vec<_>, _>>()?;
-            let best = tried.into_iter().min_by(|a, b| a.residual().total_cmp(&b.residual()));
-            return best.map_or_else(|| made(Rule::OWN), Ok);
+            return Self::by_best_rule(problem, candidate);
         }
         let made = |points| Self::by_rule(problem, candidate, strain, points);
         let tried = cells::rules(candidate).into_iter().map(made).collect::<Result<Vec<_>, _>>()?;
@@ -164,6 +161,24 @@ impl<'a> Solution<'a> {
             solution.accept();
         }
         Ok(solution)
+    }
+
+    /// As [`Self::new`] on a body of revolution: with the rule of triangles, then of quadrilaterals, with which the equations hold best.
+    fn by_best_rule(problem: &'a Problem, candidate: &'a Candidate) -> Result<Self, NoUpperBound> {
+        let mut rule = Rule::OWN;
+        let mut best = Self::turned(problem, candidate, rule)?;
+        // What one kind of cells leaves beside the other shows once the rule of that one is found.
+        let rounds = if candidate.cells.is_empty() { 1 } else { 2 };
+        for kind in [Kind::Triangles, Kind::Quadrilaterals].repeat(rounds) {
+            for other in rule.others(problem, candidate, kind) {
+                let made = Self::turned(problem, candidate, other)?;
+                if made.residual() < best.residual() {
+                    best = made;
+                }
+            }
+            rule = best.rule.unwrap_or(rule);
+        }
+        Ok(best)
     }
 
     /// As [`Self::new`] on a body of revolution, with one of the rules that the program may have used there.

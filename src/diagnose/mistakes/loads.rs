@@ -1,13 +1,15 @@
 //! Wrong loads.
 
+use std::f64::consts::TAU;
+
 use crate::compare::forces::functions::Functions;
-use crate::compare::forces::{cells, tractions};
+use crate::compare::forces::{cells, tractions, turned};
 use crate::diagnose::fit::Terms;
 use crate::diagnose::space::Space;
 use crate::diagnose::words::{factor, near, number, times};
 use crate::diagnose::{Finding, Trial};
 use crate::load::{Affine, BodyForce};
-use crate::scene::{Body, Traction};
+use crate::scene::{Body, Load, Traction};
 
 /// Coefficients of components that are smaller than this are none.
 const NONE: f64 = 5e-3;
@@ -26,10 +28,12 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     let weights: Vec<usize> = (0..scene.bodies.len()).filter(|b| !scene.bodies[*b].body_force.is_none()).collect();
     let several = tractions.len() + weights.len() > 1;
     let negative = |forces: &[[f64; 2]]| space.column(forces.iter().map(|f| f.map(|x| -x)).collect());
-    let thickness = scene.thickness;
+    let (thickness, revolved) = (scene.thickness, space.solution.rule.is_some());
     let all = move |name: &str, what: &str, s: f64| {
         let mut sentence = factor(what, s);
-        if thickness != 1.0 && (near(s, thickness) || near(s, 1.0 / thickness)) {
+        if revolved && (near(s, TAU) || near(s, 1.0 / TAU)) {
+            sentence += ", as if 2π were left out on one side";
+        } else if thickness != 1.0 && (near(s, thickness) || near(s, 1.0 / thickness)) {
             sentence += &format!(", as if the thickness {thickness} were left out on one side");
         }
         // No modulus is negative.
@@ -40,16 +44,17 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     };
     if several {
         // What initial strains pull is no load.
-        let materials = space.problem().materials();
-        let held = space.forces_of(|b, x| (!materials[b].initial().is_none()).then(|| materials[b].held_back(x)));
-        let load = space.solution.forces.load.iter().zip(&held);
-        let column = negative(&load.map(|(f, h)| [f[0] - h[0], f[1] - h[1]]).collect::<Vec<_>>());
+        let column = negative(&space.solution.forces.applied());
         terms.push(1, vec![column], move |x| all("loads", "every load", 1.0 + x[0]));
+    }
+    for traction in &scene.tractions {
+        parts_of_traction(space, traction, terms);
     }
     for (on, forces) in &tractions {
         let (on, name, what) = (on.to_string(), format!("load/{on}"), format!("the load on {on}"));
         terms.push(1, vec![negative(forces)], move |x| match several {
             true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
+            false if revolved => all("loads", "every load", 1.0 + x[0]),
             false => all(&name, &what, 1.0 + x[0]),
         });
         // Each component of the traction acting in each direction.
@@ -80,11 +85,15 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
             let (name, what) = (name.clone(), what.clone());
             terms.push(1, vec![negative(&whole)], move |x| match several {
                 true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
+                false if revolved => all("loads", "every load", 1.0 + x[0]),
                 false => all(&name, &what, 1.0 + x[0]),
             });
         }
         if !force.is_constant() {
             parts(space, b, terms);
+            if revolved {
+                continue;
+            }
             let rotation = force.rotation();
             terms.push(3, vec![negative(&fx), negative(&fy)], move |x| {
                 let sentence = match rotation.filter(|rotation| rotation.stiffness() != 0.0) {
@@ -145,30 +154,60 @@ fn are_proportional(forces: &[[f64; 2]]) -> bool {
     xx > 0.0 && yy > 0.0 && xx * yy - xy * xy <= ALIKE * xx * yy
 }
 
-/// Body forces with rows and columns of their gradient exchanged.
+/// Body forces and tractions with rows and columns of their gradient exchanged.
 fn exchanged_gradients(space: &Space<'_>) -> Vec<Trial> {
-    let of_body = |(b, body): (usize, &Body)| {
-        let [[_, xy], [yx, _]] = body.body_force.given().gradient;
-        if xy == yx {
-            return None;
-        }
-        let more = BodyForce::affine(Affine { value: [0.0; 2], gradient: [[0.0, yx - xy], [xy - yx, 0.0]] });
-        let change = space.column(of_body(space, b, &more).iter().map(|f| f.map(|x| -x)).collect());
-        let sentence = format!("rows and columns of the gradient of the body force of {} are exchanged", body.name);
-        let finding = Finding::new(format!("body/{}/gradient/body_force", body.name), None, None, sentence);
-        Some(Trial { rank: 1, left: space.left_with(&change), findings: vec![finding] })
+    let scene = &space.problem().scene;
+    let trial = |name: String, of: &str, forces: Vec<[f64; 2]>| {
+        let change = space.column(forces.iter().map(|f| f.map(|x| -x)).collect());
+        let finding = Finding::new(name, None, None, format!("rows and columns of the gradient of {of} are exchanged"));
+        Trial { rank: 1, left: space.left_with(&change), findings: vec![finding] }
     };
-    space.problem().scene.bodies.iter().enumerate().filter_map(of_body).collect()
+    // What is there in place of it, less what should be.
+    let change = |own: &Affine| {
+        let is_symmetric = own.gradient[0][1] == own.gradient[1][0];
+        (!is_symmetric).then(|| own.transposed(scene.origin).less(own))
+    };
+    let of_body = |(b, body): (usize, &Body)| {
+        let more = BodyForce::affine(change(&body.body_force.given())?);
+        let (name, of) =
+            (format!("body/{}/gradient/body_force", body.name), format!("the body force of {}", body.name));
+        Some(trial(name, &of, of_body(space, b, &more)))
+    };
+    let of_traction = |traction: &Traction| {
+        let Load::Affine(own) = &traction.load else { return None };
+        let on = &traction.on;
+        Some(trial(format!("load/{on}/gradient"), &format!("the load on {on}"), of_affine(space, on, &change(own)?)))
+    };
+    let bodies = scene.bodies.iter().enumerate().filter_map(of_body);
+    bodies.chain(scene.tractions.iter().filter_map(of_traction)).collect()
+}
+
+/// The two parts of an affine traction, each with a factor of its own, where it has both.
+fn parts_of_traction<'a>(space: &'a Space<'a>, traction: &'a Traction, terms: &mut Terms<'a>) {
+    let Load::Affine(own) = &traction.load else { return };
+    let [constant, varying] = own.parts(space.problem().scene.origin);
+    if constant.value == [0.0; 2] || own.is_constant() {
+        return;
+    }
+    for (key, what, part) in [("value", "the constant part", constant), ("gradient", "the gradient", varying)] {
+        let forces = of_affine(space, &traction.on, &part);
+        let column = space.column(forces.iter().map(|f| f.map(|x| -x)).collect());
+        let (name, what) = (format!("load/{}/{key}", traction.on), format!("{what} of the load on {}", traction.on));
+        terms.push(1, vec![column], move |x| {
+            vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))]
+        });
+    }
 }
 
 /// The parts of a force that is not the same everywhere, each with a factor of its own, where there are several.
 fn parts<'a>(space: &'a Space<'a>, b: usize, terms: &mut Terms<'a>) {
-    let body = &space.problem().scene.bodies[b];
-    let Affine { value, gradient } = body.body_force.given();
+    let scene = &space.problem().scene;
+    let body = &scene.bodies[b];
+    let [constant, varying] = body.body_force.given().parts(scene.origin);
     let rotation = body.body_force.rotation().map(|rotation| BodyForce::NONE.with_rotation(rotation));
     let all = [
-        ("value", "the constant part of the body force of", BodyForce::constant(value)),
-        ("gradient", "the gradient of the body force of", BodyForce::affine(Affine { value: [0.0; 2], gradient })),
+        ("value", "the constant part of the body force of", BodyForce::affine(constant)),
+        ("gradient", "the gradient of the body force of", BodyForce::affine(varying)),
         ("rotation", "the rotation of", rotation.unwrap_or(BodyForce::NONE)),
     ];
     let present: Vec<_> = all.into_iter().filter(|(_, _, force)| !force.is_none()).collect();
@@ -218,7 +257,19 @@ fn of_traction(space: &Space<'_>, on: &str) -> Vec<[f64; 2]> {
     let (named, degree) = (problem.mesh.boundary(on), space.solution.candidate.degree);
     let mut forces = vec![[0.0; 2]; space.count()];
     for (e, traction) in problem.pressed_edges().iter().filter(|(e, _)| named.contains(e)) {
-        tractions::add(problem, (*e, traction), degree, Functions::Values, &mut forces);
+        let weighted = problem.times_weight(*e, traction);
+        tractions::add(problem, (*e, &weighted), degree, Functions::Values, &mut forces);
+    }
+    forces
+}
+
+/// Nodal forces of an affine traction on one boundary.
+fn of_affine(space: &Space<'_>, on: &str, load: &Affine) -> Vec<[f64; 2]> {
+    let (problem, degree) = (space.problem(), space.solution.candidate.degree);
+    let mut forces = vec![[0.0; 2]; space.count()];
+    for e in problem.mesh.boundary(on) {
+        let ends = problem.mesh.edges[e].vertices.map(|v| load.at(problem.mesh.points[v]));
+        tractions::add(problem, (e, &problem.times_weight(e, &ends)), degree, Functions::Values, &mut forces);
     }
     forces
 }
@@ -226,6 +277,10 @@ fn of_traction(space: &Space<'_>, on: &str) -> Vec<[f64; 2]> {
 /// Nodal forces of a body force in one body.
 fn of_body(space: &Space<'_>, body: usize, force: &BodyForce) -> Vec<[f64; 2]> {
     let (problem, mesh) = (space.problem(), &space.problem().mesh);
+    if let Some(rule) = space.solution.rule {
+        let of = |b: usize| if b == body { force } else { &BodyForce::NONE };
+        return turned::body_forces(problem, space.solution.candidate, rule, of);
+    }
     let mut forces = vec![[0.0; 2]; space.count()];
     for t in (0..mesh.triangles.len()).filter(|t| mesh.body[*t] == body) {
         let Some(cell) = space.counted(t) else { continue };

@@ -52,16 +52,11 @@ impl<'a> Places<'a> {
         Moduli::of_body(problem, &problem.scene.bodies[problem.mesh.body[t]])
     }
 
-    fn column(
-        &self,
-        triangles: &[usize],
-        moduli: impl Fn(usize) -> Moduli,
-        value: impl Fn(usize) -> [f64; 2],
-    ) -> Vec<f64> {
+    /// What triangle `t` asks for with other constants.
+    fn column(&self, t: usize, moduli: Moduli) -> Vec<f64> {
         let mut forces = vec![[0.0; 2]; self.space.count()];
-        for &t in triangles {
-            self.space.add_element(t, moduli(t), &value, |node, f| (0..2).for_each(|c| forces[node][c] += f[c]));
-        }
+        let value = |n: usize| self.space.solution.candidate.value(n);
+        self.space.add_element(t, moduli, value, |node, f| (0..2).for_each(|c| forces[node][c] += f[c]));
         self.space.column(forces)
     }
 
@@ -69,7 +64,7 @@ impl<'a> Places<'a> {
     fn moved(&self, node: usize) -> Trial {
         let unit = |c: usize| {
             let value = |n: usize| if n == node { [[1.0, 0.0], [0.0, 1.0]][c] } else { [0.0; 2] };
-            self.column(&self.triangles_at[node], |t| self.own(t), value)
+            self.space.column(self.space.own_forces(Some(&self.triangles_at[node]), value))
         };
         let columns = [unit(0), unit(1)];
         let (x, left) = fit(&columns.each_ref().map(Vec::as_slice), &self.space.residual, self.space.square);
@@ -117,19 +112,18 @@ impl<'a> Places<'a> {
 
     /// One triangle of another material.
     fn material(&self, t: usize) -> Trial {
-        let value = |n: usize| self.space.solution.candidate.value(n);
-        let own = self.own(t);
-        let Moduli { lambda, mu, .. } = own;
-        if mu == 0.0 {
-            let column = self.column(&[t], |_| own, value);
+        let Moduli { lambda, mu, .. } = self.own(t);
+        if mu == 0.0 || self.space.solution.rule.is_some() {
+            let value = |n: usize| self.space.solution.candidate.value(n);
+            let column = self.space.column(self.space.own_forces(Some(&[t]), value));
             let (x, left) = fit(&[&column], &self.space.residual, self.space.square);
             let sentence = factor(&format!("the stiffness of {}", self.named(t)), 1.0 + x[0]);
             let findings = vec![Finding::new("triangle/material", Some(1.0 + x[0]), None, sentence)];
             return Trial { rank: 4, left, findings };
         }
         let columns = [
-            self.column(&[t], |_| Moduli { lambda: 1.0, ..Moduli::NONE }, value),
-            self.column(&[t], |_| Moduli { mu: 1.0, shear: 1.0, ..Moduli::NONE }, value),
+            self.column(t, Moduli { lambda: 1.0, ..Moduli::NONE }),
+            self.column(t, Moduli { mu: 1.0, shear: 1.0, ..Moduli::NONE }),
         ];
         let (x, left) = fit(&columns.each_ref().map(Vec::as_slice), &self.space.residual, self.space.square);
         let (of_lambda, of_mu) = (1.0 + x[0] / lambda, 1.0 + x[1] / mu);

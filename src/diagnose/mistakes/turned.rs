@@ -1,9 +1,7 @@
-//! Mistakes in models of bodies of revolution: those of the axis, and constants and loads that are off by a number.
-
-use std::f64::consts::TAU;
+//! Mistakes in models of bodies of revolution: those of the axis, and constants that are off by a number.
 
 use super::{initial, material, shift};
-use crate::bounds::{Hold, Sum};
+use crate::bounds::Sum;
 use crate::compare::forces::functions::Functions;
 use crate::compare::forces::tractions;
 use crate::compare::forces::turned;
@@ -13,7 +11,7 @@ use crate::diagnose::Trial;
 use crate::diagnose::fit::Terms;
 use crate::diagnose::physical::is_mistyped;
 use crate::diagnose::space::{Moduli, Space};
-use crate::diagnose::words::{factor, near, times};
+use crate::diagnose::words::factor;
 use crate::element::Material;
 use crate::problem::Problem;
 
@@ -44,7 +42,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     let Some(columns) = Columns::new(space) else { return Vec::new() };
     let materials = space.problem().materials();
     let own = |body: usize, e: [f64; 4]| Some(materials[body].revolved().stress(e));
-    let loads = [true, false].map(|weighted| space.column(columns.loads(None, weighted)));
+    let loads = [true, false].map(|weighted| space.column(columns.loads(weighted)));
     let trial = |name: &str, model: Model, weighted: bool, sentence: &str| {
         let stiffness = space.column(columns.stresses(&own, model));
         let load = &loads[usize::from(!weighted)];
@@ -77,35 +75,13 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     trials
 }
 
-/// Constants and loads that are off by a number.
+/// Constants that are off by a number.
 pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     let Some(columns) = Columns::new(space) else { return };
     let bodies = &space.problem().scene.bodies;
-    let negative = |forces: Vec<[f64; 2]>| space.column(forces.into_iter().map(|f| f.map(|x| -x)).collect());
     let part = |at: usize, law: &dyn Fn([f64; 4]) -> [f64; 4]| {
         space.column(columns.stresses(&|body, e| (body == at).then(|| law(e)), RIGHT))
     };
-    let tractions = &space.problem().scene.tractions;
-    let several = tractions.len() + bodies.iter().filter(|body| !body.body_force.is_none()).count() > 1;
-    let all = |name: String, what: String, s: f64| {
-        let mut sentence = factor(&what, s);
-        if near(s, TAU) || near(s, 1.0 / TAU) {
-            sentence += ", as if 2π were left out on one side";
-        } else if s > NONE {
-            sentence += &format!(" (or every Young's modulus {} times)", times(1.0 / s));
-        }
-        vec![Finding::new(name, Some(s), Some(1.0), sentence)]
-    };
-    terms.push(1, vec![negative(columns.loads(None, true))], move |x| {
-        all("loads".into(), "every load".into(), 1.0 + x[0])
-    });
-    for traction in tractions.iter().filter(|_| several) {
-        let on = &traction.on;
-        terms.push(1, vec![negative(columns.loads(Some(on), true))], move |x| {
-            let sentence = factor(&format!("the load on {on}"), 1.0 + x[0]);
-            vec![Finding::new(format!("load/{on}"), Some(1.0 + x[0]), Some(1.0), sentence)]
-        });
-    }
     initial::terms_of(space, terms, |of| columns.held(of));
     let shear =
         |body: usize, e: [f64; 4]| Some([0.0, 0.0, 0.0, space.problem().material(body).revolved().stress(e)[3]]);
@@ -139,9 +115,6 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     }
 }
 
-/// Factors that are smaller than this are none.
-const NONE: f64 = 5e-3;
-
 impl<'a> Columns<'a> {
     fn new(space: &'a Space<'a>) -> Option<Self> {
         let (problem, rule) = (space.problem(), space.solution.rule?);
@@ -167,19 +140,7 @@ impl<'a> Columns<'a> {
             return 1.0;
         }
         let rest: f64 = stiffness.iter().zip(load).map(|(k, f)| (k - scale * f).powi(2)).sum();
-        let pulled = self.space.column(self.held(|body| Some(self.problem().material(body))));
-        let driven = if self.is_moved() { f64::INFINITY } else { scale * scale * square + dot(&pulled, &pulled) };
-        let whole = self.space.square;
-        rest / if driven > 0.0 { whole.min(driven) } else { whole }
-    }
-
-    /// True if a support prescribes a displacement.
-    fn is_moved(&self) -> bool {
-        (0..self.space.count()).any(|node| match self.space.solution.hold(node) {
-            Hold::Free => false,
-            Hold::Line { value, .. } => value != 0.0,
-            Hold::Fixed(value) => value != [0.0; 2],
-        })
+        rest / self.space.whole()
     }
 
     /// Nodal forces ∫ s:e(φ) of the stress s that initial strains ask for, of bodies that have a material in `of`.
@@ -233,29 +194,23 @@ impl<'a> Columns<'a> {
         forces
     }
 
-    /// The loads on one boundary, or all.
-    fn loads(&self, on: Option<&str>, weighted: bool) -> Vec<[f64; 2]> {
-        let (problem, candidate) = (self.problem(), self.space.solution.candidate);
+    /// All loads, with the weight r or its mean.
+    fn loads(&self, weighted: bool) -> Vec<[f64; 2]> {
+        let (problem, solution) = (self.problem(), self.space.solution);
+        if weighted {
+            return solution.forces.applied();
+        }
         let mut loads = vec![[0.0; 2]; self.space.count()];
         for (e, traction) in problem.pressed_edges() {
-            if on.is_none_or(|on| problem.mesh.boundary(on).contains(&e)) {
-                let mean = || traction.iter().map(|t| t.map(|t| self.mean * t)).collect();
-                let own = if weighted { problem.times_weight(e, &traction) } else { mean() };
-                tractions::add(problem, (e, &own), candidate.degree, Functions::Values, &mut loads);
+            let own: Vec<[f64; 2]> = traction.iter().map(|t| t.map(|t| self.mean * t)).collect();
+            tractions::add(problem, (e, &own), solution.candidate.degree, Functions::Values, &mut loads);
+        }
+        turned::points(problem, solution.candidate, self.rule, |at| {
+            let force = problem.section().force(problem.body_force(at.triangle), at.place);
+            for (&node, (value, _)) in at.nodes.iter().zip(at.shapes) {
+                (0..2).for_each(|c| loads[node][c] += at.weight * self.mean * value * force[c]);
             }
-        }
-        if on.is_none() {
-            let section = problem.section();
-            turned::points(problem, candidate, self.rule, |at| {
-                let force = problem.body_force(at.triangle);
-                let ([a, b], [_, axial]) = (section.radial(force), section.forces(force));
-                let weight = at.weight * if weighted { at.radius } else { self.mean };
-                for (&node, (value, _)) in at.nodes.iter().zip(at.shapes) {
-                    loads[node][0] += weight * value * (a + b * at.radius);
-                    loads[node][1] += weight * value * axial;
-                }
-            });
-        }
+        });
         loads
     }
 }

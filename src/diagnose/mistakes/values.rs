@@ -1,6 +1,6 @@
 //! Right displacements written in a wrong way: signs, axes, order.
 
-use crate::diagnose::space::{Moduli, Space};
+use crate::diagnose::space::Space;
 use crate::diagnose::{Finding, Trial};
 
 /// Shifts of the numbering that are tried, either way.
@@ -32,8 +32,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
 /// Part of the squared residual that is left with other displacements; nodes of triangles that touch `lost` do not count.
 fn left(space: &Space<'_>, value: impl Fn(usize) -> [f64; 2], lost: &[usize]) -> f64 {
     let problem = space.problem();
-    let bodies = &problem.scene.bodies;
-    let internal = space.stiffness_on(|b| Some(Moduli::of_body(problem, &bodies[b])), value);
+    let internal = space.column(space.own_forces(None, value));
     let loads = space.column(space.solution.forces.load.clone());
     let mut counted = vec![true; space.count()];
     for t in 0..if lost.is_empty() { 0 } else { problem.mesh.triangles.len() } {
@@ -43,7 +42,7 @@ fn left(space: &Space<'_>, value: impl Fn(usize) -> [f64; 2], lost: &[usize]) ->
         }
     }
     let term = |(k, (a, b)): (usize, (&f64, &f64))| if counted[k / 2] { (a - b).powi(2) } else { 0.0 };
-    internal.iter().zip(&loads).enumerate().map(term).sum::<f64>() / space.square
+    internal.iter().zip(&loads).enumerate().map(term).sum::<f64>() / space.whole()
 }
 
 /// Nodes in the order of the file.

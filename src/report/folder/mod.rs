@@ -113,12 +113,29 @@ fn wait_within(dir: &Path, patience: Duration) -> Result<(), ReportError> {
     lock(inside.as_deref(), since, patience, dir).map(drop)
 }
 
+/// Refuses a path at which no file can be written, before there is anything to write.
+///
+/// # Errors
+/// A folder has its name, or the one it would be in is missing or not writable.
+pub fn refuse_file(path: &Path) -> io::Result<()> {
+    if path.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    Ok(access(around(path), Access::WRITE_OK | Access::EXEC_OK)?)
+}
+
+/// The folder that a file is in.
+fn around(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Puts `bytes` in the place of the file `path`, which keeps its mode, in one step and under the lock of its folder.
 ///
 /// # Errors
 /// It cannot be written; what was there is then still there.
 pub fn replace_file(path: &Path, bytes: Vec<u8>) -> io::Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    refuse_file(path)?;
+    let folder = around(path);
     let _alone = lock(Some(folder), Instant::now(), PATIENCE, folder).map_err(io::Error::other)?;
     let _unbroken = signals::unbroken();
     sweep(folder);
@@ -162,7 +179,7 @@ impl Place {
         let dir = match dir.canonicalize() {
             Ok(dir) => dir,
             Err(_) => {
-                let parent = dir.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+                let parent = around(dir);
                 fs::create_dir_all(parent)?;
                 let name = dir.file_name().ok_or(io::ErrorKind::NotFound)?;
                 parent.canonicalize()?.join(name)

@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use rustix::fs::Access;
 use serde::{Deserialize, Serialize};
 
 use crate::compare::{Allowances, Basis, Check, Comparison};
-use crate::report::folder::replace_file;
+use crate::report::folder::{refuse_file, replace_file};
 use crate::study::{Answer, Certified};
 
 /// Largest relative change that a later run may show: the numbers are bit-stable for one build, other builds and
@@ -119,8 +118,7 @@ impl Baseline {
             Ok(kind) if !kind.is_file() => return Err(BaselineError::NoFile { path: path.to_path_buf() }),
             _ => {}
         }
-        let unwritable = |e: rustix::io::Errno| BaselineError::Write { path: path.to_path_buf(), source: e.into() };
-        rustix::fs::access(folder_of(path), Access::WRITE_OK | Access::EXEC_OK).map_err(unwritable)
+        refuse_file(path).map_err(|source| BaselineError::Write { path: path.to_path_buf(), source })
     }
 
     /// Writes a baseline, whole or not at all. A link to a file stays one, and the file keeps its mode.
@@ -170,11 +168,6 @@ impl Baseline {
 /// The largest difference from `value` that rounding explains, beside numbers up to `largest`.
 pub(in crate::study) fn unchanged(value: f64, largest: f64) -> f64 {
     UNCHANGED * value.abs().max(UNCHANGED * largest)
-}
-
-/// The folder that holds the file `path`.
-fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 #[cfg(test)]

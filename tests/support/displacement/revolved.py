@@ -30,6 +30,13 @@ MISTAKES = {
     "turn": {"load": 2 * np.pi},
     "loads": {"loads_weighted": False},
     "top": {"top": 1.1},
+    "weightless": {"pull": (0.0, 0.0)},
+    "lifted": {"pull": (-0.02, 0.05)},
+    "across": {"pull": (-0.05, 0.02)},
+    "uniform": {"slope": 0.0},
+    "held": {"held": True},
+    "value": {"moved": 1e-3},
+    "exact-loads": {"order_of_loads": 12},
 }
 
 
@@ -44,8 +51,8 @@ def mesh(cells, seed, inner, n):
 
 class Body:
     def __init__(self, cells, grid, inner, young=1.0, poisson=POISSON, hoop=1.0, weighted=True, loads_weighted=True,
-                 load=1.0, top=1.0, order=None):
-        self.cells, self.grid, self.inner = cells, grid, inner
+                 load=1.0, top=1.0, order=None, order_of_loads=None, pull=(0.02, -0.05), slope=1.0, held=False, moved=0.0):
+        self.cells, self.grid, self.inner, self.held, self.moved = cells, grid, inner, held, moved
         self.space = skfem.ElementVector(ELEMENTS[cells]())
         self.basis = skfem.Basis(grid, self.space, intorder=order or FULL[cells])
         lame, shear = poisson * young / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
@@ -65,7 +72,7 @@ class Body:
 
         @skfem.LinearForm
         def body(v, w):
-            return load * weight(w, weighted and loads_weighted) * (0.02 * v.value[0] - 0.05 * v.value[1])
+            return load * weight(w, weighted and loads_weighted) * (pull[0] * v.value[0] + pull[1] * v.value[1])
 
         @skfem.LinearForm
         def outside(v, w):
@@ -74,7 +81,7 @@ class Body:
         @skfem.LinearForm
         def above(v, w):
             r = w.x[0]
-            return top * load * weight(w, weighted and loads_weighted) * (-0.8 + (r - inner)) * v.value[1]
+            return top * load * weight(w, weighted and loads_weighted) * (-0.8 + slope * r - inner) * v.value[1]
 
         def side(axis, at):
             return skfem.FacetBasis(grid, self.space, facets=grid.facets_satisfying(lambda x: abs(x[axis] - at) < 1e-9),
@@ -82,7 +89,8 @@ class Body:
 
         self.form, self.body = form, body
         self.tractions = outside.assemble(side(0, inner + 1)) + above.assemble(side(1, 1))
-        self.k, self.f = form.assemble(self.basis), body.assemble(self.basis) + self.tractions
+        of_loads = skfem.Basis(grid, self.space, intorder=order_of_loads or order or FULL[cells])
+        self.k, self.f = form.assemble(self.basis), body.assemble(of_loads) + self.tractions
         self.component = np.zeros(self.basis.N, int)
         self.component[self.basis.nodal_dofs[1]] = 1
         for dofs in (self.basis.facet_dofs, self.basis.interior_dofs):
@@ -93,10 +101,13 @@ class Body:
         r, z = self.basis.doflocs
         held = (abs(r) < 1e-12) & (self.component == 0)
         foot = np.flatnonzero((abs(z) < 1e-12) & (self.component == 1))
+        if self.held:
+            held |= (abs(z) < 1e-12) & (self.component == 0)
         active = np.ones(len(foot), bool)
         for _ in range(50):
             fixed = np.concatenate([np.flatnonzero(held), foot[active]])
             u = skfem.solve(*skfem.condense(self.k, self.f, D=fixed))
+            u[np.argmin((r - self.inner - 0.6) ** 2 + (z - 0.6) ** 2)] += self.moved
             if not contact:
                 return u
             reaction = (self.k @ u - self.f)[foot]

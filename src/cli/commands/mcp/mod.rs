@@ -87,7 +87,7 @@ fn one(place: &Path) -> Result<Exit, CliError> {
     let unreadable = |e: String| CliError::stopped(Exit::Failed, format!("{}: {e}", call.display()), "");
     let text = fs::read(&call).map_err(|e| unreadable(e.to_string()))?;
     let call: Call = serde_json::from_slice(&text).map_err(|e| unreadable(e.to_string()))?;
-    let text = serde_json::to_vec(&call.answer()).map_err(|e| CliError::unwritable(&answer, &e))?;
+    let text = serde_json::to_vec(&call.answer()).map_err(|e| CliError::unwritable(&answer, &e.into()))?;
     fs::write(&answer, text).map_err(|e| CliError::unwritable(&answer, &e))?;
     Ok(Exit::Agree)
 }

@@ -34,8 +34,9 @@ impl Position {
             (0..line.fields.len()).map(|k| line.number(k)).collect()
         };
         let (shift, turn) = (row(0)?, row(1)?);
-        if let [ax, ay, az, bx, by, bz, _] = *turn.as_slice()
-            && (bx - ax).hypot(by - ay) > 1e-9 * (bz - az).abs()
+        if let [ax, ay, az, bx, by, bz, angle] = *turn.as_slice()
+            && angle != 0.0
+            && (bx - ax).hypot(by - ay) >= 1e-9 * (bz - az).abs()
         {
             let what = "the instance is turned about an axis that is not that of z";
             return Err(keyword.fault(what, "this program is plane: turn it in its plane"));

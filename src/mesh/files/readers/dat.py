@@ -15,7 +15,7 @@ def read_dat(source):
         elif words and not words[0].lstrip("-").isdigit():
             reading = False
         elif reading and len(words) >= 3:
-            values[int(words[0])] = [real(x) for x in words[1:4]]
+            values[int(words[0])] = in_space(words[1:4])
     if not values:
         raise Unreadable("it has no table of displacements (vx,vy,vz): ask for one with *NODE PRINT and U")
     deck = next((source[:-4] + end for end in (".inp", ".INP") if os.path.isfile(source[:-4] + end)), None)
@@ -28,6 +28,11 @@ def read_dat(source):
         raise Unreadable(f"it has no displacement of node {lacking[0]}, which a cell of {os.path.basename(deck)} uses: print a set with all nodes")
     found.fields["displacement"] = [values.get(tag, [0.0] * 3) for tag in found.index]
     return found
+
+
+def in_space(words):
+    """Three numbers, where two are written zero as the third."""
+    return ([real(x) for x in words] + [0.0] * 3)[:3]
 
 
 def read_deck(deck, found, depth=0):
@@ -50,7 +55,7 @@ def read_deck(deck, found, depth=0):
             continue
         words = [word.strip() for word in text.split(",") if word.strip()]
         if part == "*NODE" and words:
-            found.point(int(words[0]), [real(x) for x in words[1:4]])
+            found.point(int(words[0]), in_space(words[1:4]))
         elif part == "*ELEMENT" and wanted in DECK_CELLS:
             begun += [int(word) for word in words]
             if len(begun) > wanted:
