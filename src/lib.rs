@@ -57,35 +57,21 @@
 #[doc = include_str!("../docs/library.md")]
 struct Library;
 
-pub mod bounds;
-pub mod budget;
+use hypercircle_core::vector;
+pub use hypercircle_core::{
+    bounds, budget, compare, diagnose, dual, elasticity, element, load, mesh, optimise, primal, problem, process,
+    proof, quantity, scene, statics,
+};
+
 pub mod cause;
 pub mod chart;
 pub mod cli;
-pub mod compare;
-pub mod diagnose;
 pub mod diff;
-pub mod dual;
-pub mod elasticity;
-pub mod element;
 pub mod job;
-mod lanes;
-pub mod load;
 pub mod measure;
-pub mod mesh;
-pub mod optimise;
 pub mod plot;
-pub mod primal;
-pub mod problem;
-pub mod process;
-pub mod proof;
 pub mod published;
-pub mod quantity;
 pub mod report;
-pub mod scene;
-mod sets;
 pub mod stability;
-pub mod statics;
 pub mod study;
-mod vector;
 pub mod workbench;

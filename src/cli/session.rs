@@ -127,8 +127,10 @@ impl Session {
         drop(given);
         // A displacement that is handed in belongs to the mesh as given.
         let certify = if self.command == "certify" { study::certify } else { study::certify_divided };
-        let adapt =
-            |problem, options: &Options| self.adapted(problem, (method.as_ref(), options), &admission, (solve, limits));
+        let adapt = |problem, options: &Options, max_seconds: Option<f64>| {
+            let limits = &Limits { max_seconds, ..*limits };
+            self.adapted(problem, (method.as_ref(), options), &admission, (solve, limits))
+        };
         let (adapted, coulomb) = if follows_coulomb(&problem.scene) {
             let told = |text: &str| self.progress.phase(text.to_string());
             study::solve_coulomb_to(
@@ -141,7 +143,7 @@ impl Session {
             )
             .map(|(adapted, coulomb)| (adapted, Some(coulomb)))
         } else if solve.is_adaptive() {
-            adapt(problem, &options).map(|adapted| (adapted, None))
+            adapt(problem, &options, limits.max_seconds).map(|adapted| (adapted, None))
         } else {
             certify(problem, method.as_ref(), &options).map(|certified| (Adapted::only(certified), None))
         }

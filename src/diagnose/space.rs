@@ -295,7 +295,8 @@ impl<'a> Space<'a> {
             Hold::Fixed(value) => value != [0.0; 2],
         });
         let forces = &self.solution.forces;
-        let driven: f64 = [self.column(forces.applied()), self.column(forces.initial.clone())].iter().flatten().map(|f| f * f).sum();
+        let driven: f64 =
+            [self.column(forces.applied()), self.column(forces.initial.clone())].iter().flatten().map(|f| f * f).sum();
         if is_moved || driven == 0.0 { self.square } else { self.square.min(driven) }
     }
 

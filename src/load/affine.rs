@@ -28,7 +28,10 @@ impl Affine {
     /// The difference from `other`.
     pub fn less(&self, other: &Self) -> Self {
         let less = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
-        Affine { value: less(self.value, other.value), gradient: [0, 1].map(|i| less(self.gradient[i], other.gradient[i])) }
+        Affine {
+            value: less(self.value, other.value),
+            gradient: [0, 1].map(|i| less(self.gradient[i], other.gradient[i])),
+        }
     }
 
     /// Every value times a factor.

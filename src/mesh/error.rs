@@ -128,7 +128,7 @@ pub(crate) fn shown_by(scene: &Scene) -> String {
 }
 
 /// A point as messages show it: in the coordinates of the file.
-pub(crate) fn at(scene: &Scene, point: [f64; 2]) -> String {
+pub fn at(scene: &Scene, point: [f64; 2]) -> String {
     let [x, y] = scene.as_written(point);
     format!("({x}, {y})")
 }

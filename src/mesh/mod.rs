@@ -5,7 +5,7 @@
 //! index are bonded.
 
 pub mod cells;
-pub(crate) mod error;
+pub mod error;
 pub mod files;
 pub mod inventory;
 pub mod polygons;

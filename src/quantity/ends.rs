@@ -7,7 +7,7 @@ pub fn outside([lower, upper]: [f64; 2], rounding: f64, x: f64) -> f64 {
 }
 
 /// The rest of an interval for a value that is never below zero, or never above.
-pub(crate) fn clipped([lower, upper]: [f64; 2], [no_less, no_more]: [bool; 2]) -> [f64; 2] {
+pub fn clipped([lower, upper]: [f64; 2], [no_less, no_more]: [bool; 2]) -> [f64; 2] {
     let lower = if no_less { lower.max(upper.min(0.0)) } else { lower };
     let upper = if no_more { upper.min(lower.max(0.0)) } else { upper };
     [lower, upper]

@@ -12,8 +12,8 @@ mod invariant;
 mod point;
 mod tip;
 
-pub(crate) use adjoint::pass::strained;
-pub(crate) use ends::clipped;
+pub use adjoint::pass::strained;
+pub use ends::clipped;
 pub use ends::outside;
 pub use functional::form::Form;
 pub use functional::value::{displaced, value_of};

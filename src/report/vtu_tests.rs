@@ -6,6 +6,7 @@ use quick_xml::events::Event;
 
 use super::*;
 use crate::report::sample::{Sample, Verdict, assert_well_formed, with_quadrilaterals};
+use crate::scene::{Draft, Kinematics, Scene};
 
 /// Name → (type, components, bytes), read with nothing of the writer.
 fn arrays(xml: &str) -> BTreeMap<String, (String, usize, Vec<u8>)> {
@@ -195,7 +196,8 @@ fn von_mises_of_known_states() {
     let mut sample = Sample::new(1, Verdict::Agree);
     // Plane strain, ν = 0.3, uniaxial 1: σ_33 = 0.3, ½(1² + 0.3² + 0.7²) = 0.79.
     assert!((von_mises(&sample.problem, 0, [1.0, 0.0, 0.0], [0.0; 2]) - 0.79_f64.sqrt()).abs() < 1e-15);
-    sample.problem.scene.draft.kinematics = crate::scene::Kinematics::PlaneStress;
+    let draft = Draft { kinematics: Kinematics::PlaneStress, ..(*sample.problem.scene).clone() };
+    sample.problem.scene = Scene::unchecked(draft);
     assert!((von_mises(&sample.problem, 0, [1.0, 0.0, 0.0], [0.0; 2]) - 1.0).abs() < 1e-15);
     assert!((von_mises(&sample.problem, 0, [0.0, 0.0, 1.0], [0.0; 2]) - 3.0_f64.sqrt()).abs() < 1e-15);
 }

@@ -31,8 +31,8 @@ pub use quantity::{Component, Extent, Holder, Invariant, Mode, PointValue, Quant
 pub use reading::error::{Fault, SceneError};
 pub use reading::raw::schema;
 pub use reading::read::BoundaryUse;
-pub(crate) use reading::source::{capital, counted};
-pub(crate) use reading::validate::scene_name;
+pub use reading::source::{capital, counted};
+pub use reading::validate::scene_name;
 
 /// Most bytes a scene file may have; a device that never ends is not read for ever.
 const MAX_BYTES: u64 = 64 << 20;

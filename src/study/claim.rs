@@ -129,7 +129,8 @@ fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracke
         }
         // The rule with which a wrong field fits best need not be that of its program, with which one mistake explains all.
         let kinds = [Kind::Triangles, Kind::Quadrilaterals].into_iter();
-        let others = kinds.flat_map(|kind| rule.others(problem, &judged.candidate, kind)).filter(|other| *other != rule);
+        let others =
+            kinds.flat_map(|kind| rule.others(problem, &judged.candidate, kind)).filter(|other| *other != rule);
         let by = |rule| {
             let other = Solution::turned(problem, &judged.candidate, rule).ok()?.within(Extent::of(problem, bracket));
             if other.residual() > FAR * solution.residual() {

@@ -159,7 +159,7 @@ fn a_bound_is_kept_where_no_time_is_left_for_another() {
     let to = |seconds: Option<f64>| {
         let certify = |held, method: &dyn DualMethod, options: &Options| certify_divided(held, method, options);
         let goal = Goal { max_triangles: Some(400), ..Goal::new(0.02) };
-        let adapt = |held, options: &Options| adapt(held, &method, options, &goal, |_| ());
+        let adapt = |held, options: &Options, _: Option<f64>| adapt(held, &method, options, &goal, |_| ());
         let given = problem(&wedge(20.0, 0.2, 0.01).0.replace("size = 0.25", "size = 0.5"));
         solve_coulomb_to((Some(0.02), seconds), given, (&method, &options), certify, adapt, |_| ()).expect("solves")
     };

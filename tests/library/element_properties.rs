@@ -331,7 +331,7 @@ fn flat_and_nearly_incompressible_triangles() {
     println!("p  aspect  ν  {}  patch", FIGURES.map(|(name, _)| name).join("  "));
     let material = |poisson| Material { kinematics: Kinematics::PlaneStrain, young: 7.0, poisson };
     for (aspect, poisson) in [1.0, 1e2, 1e4].into_iter().flat_map(|aspect| [(aspect, 0.3), (aspect, 0.499_999_9)]) {
-        for degree in 1..=8 {
+        for degree in [1, 2, 3, 5, 8] {
             let cases = [0.1, 0.45, 0.97].map(|apex| {
                 Case::new(
                     block(degree),

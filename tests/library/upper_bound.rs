@@ -116,7 +116,7 @@ fn a_higher_degree_is_sharper_on_slivers() {
     let cylinder = Problem::load(Scene::read(&path).expect("valid")).expect("valid");
     let fan = REGIMES.iter().copied().flatten().find(|row| row.id == "fan").expect("a row");
     for (name, problem) in [("cylinder", cylinder), ("fan", fan.problem(1e-6).expect("a problem"))] {
-        let gaps = [4, 6, 8].map(|p| {
+        let gaps = [3, 5, 7].map(|p| {
             let bracket = bracket(&problem, uniform(p));
             bracket.free.as_ref().expect("an upper bound").upper() - bracket.lower()
         });

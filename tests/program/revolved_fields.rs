@@ -130,7 +130,10 @@ fn solutions_of_bodies_of_revolution_pass_and_every_mistake_is_named() {
                     assert_eq!(found[0]["name"], *finding, "{cells} {name}: {diagnosis}");
                     if let Some(number) = number {
                         let value = found[0]["value"].as_f64().expect("a number");
-                        assert!((value - number).abs() < 5e-3 * number.abs() + 1e-9, "{cells} {name}: {value} for {number}");
+                        assert!(
+                            (value - number).abs() < 5e-3 * number.abs() + 1e-9,
+                            "{cells} {name}: {value} for {number}"
+                        );
                     }
                     assert!(diagnosis[0]["explained"].as_f64().expect("a number") > 0.9999, "{cells} {name}");
                 }

@@ -27,7 +27,7 @@ pub struct Quadrilateral {
 
 impl FileCells {
     /// Finds the two halves of each of the quadrilaterals `corners` among `triangles`; one that lost a half is none.
-    pub(crate) fn find(corners: &[[usize; 4]], triangles: &[[usize; 3]]) -> Self {
+    pub fn find(corners: &[[usize; 4]], triangles: &[[usize; 3]]) -> Self {
         if corners.is_empty() {
             return FileCells::default();
         }

@@ -2,7 +2,7 @@
 
 pub mod file_cells;
 pub(super) mod overlap;
-pub(crate) mod quadrilateral;
+pub mod quadrilateral;
 pub(super) mod solids;
 
 use std::collections::{HashMap, HashSet};

@@ -5,7 +5,7 @@ const EQUAL: f64 = 1e-9;
 
 /// The triangles of the quadrilateral with these corners: two along the diagonal whose worse triangle is the better one, or
 /// the one that is left where two neighbouring corners are the same vertex. `None` where it folds over or has no area.
-pub(crate) fn cut([a, b, c, d]: [usize; 4], points: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
+pub fn cut([a, b, c, d]: [usize; 4], points: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
     let mut corners = vec![a, b, c, d];
     corners.dedup();
     if corners.len() > 1 && corners.first() == corners.last() {

@@ -19,7 +19,7 @@ pub const PATIENCE: Duration = Duration::from_secs(120);
 
 /// Why a file could not be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Failure {
+pub struct Failure {
     /// The finding.
     pub what: String,
     /// Advice for the user.
@@ -32,7 +32,7 @@ pub(crate) struct Failure {
 ///
 /// # Errors
 /// [`Failure`] when there is no such interpreter, or when the script fails or takes longer than `limit`.
-pub(crate) fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> Result<Vec<u8>, Failure> {
+pub fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> Result<Vec<u8>, Failure> {
     let failure = |what: String, remedy: String| Failure { what, remedy };
     let no_folder = |e| failure(format!("no temporary folder: {e}"), "set TMPDIR to a folder with space".into());
     let folder = Scratch::new().map_err(no_folder)?;

@@ -6,5 +6,5 @@ mod encoding;
 pub(super) mod file;
 pub mod foreign;
 pub mod gmsh;
-pub(crate) mod meshio;
+pub mod meshio;
 pub(super) mod parts;

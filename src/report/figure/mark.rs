@@ -90,11 +90,12 @@ const RING: &str = r##"class="ring" fill="none" stroke="#cf222e" stroke-width="3
 mod tests {
     use super::*;
     use crate::report::sample::{Sample, Verdict};
+    use crate::scene::{Draft, Scene};
 
     #[test]
     fn causes_with_a_place_are_marked_where_the_bodies_are_drawn() {
         let mut sample = Sample::new(2, Verdict::Disagree);
-        sample.problem.scene.draft.origin = [100.0, 0.0];
+        sample.problem.scene = Scene::unchecked(Draft { origin: [100.0, 0.0], ..(*sample.problem.scene).clone() });
         let report = sample.dossier().report;
         assert_eq!(marks(&sample.problem, &report), [Mark { at: [-99.0, 0.0], number: 1, triangle: Some(0) }]);
     }

@@ -109,7 +109,8 @@ impl Scene {
     }
 
     /// The scene of parts that are known to make one.
-    pub(crate) fn unchecked(draft: Draft) -> Self {
+    #[doc(hidden)]
+    pub fn unchecked(draft: Draft) -> Self {
         Scene { draft }
     }
 }

@@ -7,5 +7,5 @@ pub(super) mod parse;
 pub(super) mod raw;
 pub(super) mod read;
 pub(super) mod source;
-pub(crate) mod text;
+pub mod text;
 pub(super) mod validate;

@@ -125,13 +125,13 @@ const UNDERFLOWS: (&str, &str) =
 const NOT_FINITE: (&str, &str) = ("every number must be finite", "write a finite number");
 
 /// A text as the beginning of a sentence.
-pub(crate) fn capital(text: &str) -> String {
+pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// `1 point`, `3 points`, `2 vertices`.
-pub(crate) fn counted(n: usize, noun: &str) -> String {
+pub fn counted(n: usize, noun: &str) -> String {
     match (n, noun.strip_suffix("ex")) {
         (1, _) => format!("1 {noun}"),
         (_, Some(stem)) => format!("{n} {stem}ices"),

@@ -16,7 +16,7 @@ pub(in crate::scene) fn disarmed(text: &str) -> String {
 }
 
 /// True if a character moves the cursor, changes colours or turns the direction of writing.
-pub(crate) fn acts(c: char) -> bool {
+pub fn acts(c: char) -> bool {
     c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 

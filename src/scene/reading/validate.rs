@@ -50,7 +50,7 @@ pub(in crate::scene) fn validate(raw: RawScene, text: &str, path: &Path) -> Resu
 }
 
 /// The stem of the file, where it can be the name of a folder: `...toml` has the stem `..`.
-pub(crate) fn scene_name(path: &Path) -> String {
+pub fn scene_name(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     if stem.trim_matches('.').is_empty() { "scene".to_owned() } else { stem }
 }

@@ -199,7 +199,8 @@ pub fn adapt(
         }
         let spent = start.elapsed().as_secs_f64();
         let mesh = (&certified.problem, &solved.solved.elements);
-        let seconds = goal.max_seconds.map(|most| [most - spent, row.step_seconds]);
+        // What quantities took is part of it, and a finer mesh takes it again.
+        let seconds = goal.max_seconds.map(|most| [most - spent, began.elapsed().as_secs_f64()]);
         let rounds = Rounds::new(goal, &admission, &forecast, mesh, shortest, seconds);
         let finer = match (goal.max_seconds, fault, terms) {
             (_, Some(fault), _) if shortest > LONGEST => Next::Nothing(fault),

@@ -10,9 +10,9 @@ use super::indicators::Indicators;
 use super::trend::{Seen, Way, inherited, learnt, raised};
 use crate::element::polynomial::quadrature::triangle_rule;
 use crate::element::{Elements, MAX_DEGREE, block};
-use crate::mesh::Triangulation;
 use crate::mesh::refinement::bisect::{Bisected, RefinementEdges, bisect};
-use crate::mesh::testing::{grid, scene};
+use crate::mesh::{RawMesh, Triangulation};
+use crate::scene::{Body, Draft, Kinematics, MeshSource, Scene};
 
 type Field = fn([f64; 2]) -> f64;
 
@@ -32,7 +32,20 @@ fn rooted([x, y]: [f64; 2]) -> f64 {
 
 /// The unit square in right isosceles triangles, with a vertex in the singular point.
 fn square() -> Triangulation {
-    Triangulation::new(grid("a", [0.0; 2], [1.0; 2], [4, 4]), &scene(&["a"])).expect("a good mesh").0
+    let corner = |i: usize, j: usize| 5 * j + i;
+    let halves = |i: usize, j: usize| {
+        let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+        [[a, b, c], [a, c, d]].map(|corners| (corners, "a".to_string()))
+    };
+    let all = |n: usize| (0..n).flat_map(move |j| (0..n).map(move |i| [i, j]));
+    let raw = RawMesh {
+        points: all(5).map(|at| at.map(|k| 0.25 * k as f64)).collect(),
+        triangles: all(4).flat_map(|[i, j]| halves(i, j)).collect(),
+        ..RawMesh::default()
+    };
+    let draft = Draft::new("test", Kinematics::PlaneStrain, MeshSource::File("test.msh".into()));
+    let scene = Scene::unchecked(Draft { bodies: vec![Body::isotropic("a", 1.0, 0.3)], ..draft });
+    Triangulation::new(raw, &scene).expect("a good mesh").0
 }
 
 /// Every triangle cut in four, its edges in halves, and the triangle that each one lies in.

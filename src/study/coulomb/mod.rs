@@ -149,11 +149,14 @@ pub fn solve_coulomb(
     Ok((certified, coulomb))
 }
 
+/// Of the seconds that are left, the part for refinement with a bound held: finding another on the finer mesh takes the rest.
+const FOR_REFINEMENT: f64 = 0.5;
+
 /// Rounds of refinement with a bound held and another bound on the finer mesh.
 const ROUNDS: usize = 4;
 
 /// Where there is a `tolerance` of the relative error, solves and refines in turn until the bracket for the bound that was found meets it:
-/// `adapt` refines with the bound held. Where `seconds` would pass before a bound is found on a finer mesh, that of the coarser one is kept.
+/// `adapt` refines with the bound held, for no more than the seconds that it is given. Where `seconds` would pass before a bound is found on a finer mesh, that of the coarser one is kept.
 ///
 /// # Errors
 /// As [`solve_coulomb`].
@@ -162,7 +165,7 @@ pub fn solve_coulomb_to(
     mut problem: Problem,
     (method, options): (&dyn DualMethod, &Options),
     certify: impl Fn(Problem, &dyn DualMethod, &Options) -> Result<Certified, StudyError>,
-    adapt: impl Fn(Problem, &Options) -> Result<Adapted, StudyError>,
+    adapt: impl Fn(Problem, &Options, Option<f64>) -> Result<Adapted, StudyError>,
     mut told: impl FnMut(&str),
 ) -> Result<(Adapted, Coulomb), StudyError> {
     let mut options = options.clone();
@@ -180,7 +183,8 @@ pub fn solve_coulomb_to(
             let stopped = if met { None } else { stopped };
             return Ok((Adapted { certified, history, stopped, advice }, coulomb));
         }
-        let adapted = adapt(certified.problem, &options)?;
+        let left = seconds.map(|most| FOR_REFINEMENT * (most - begin.elapsed().as_secs_f64()).max(0.0));
+        let adapted = adapt(certified.problem, &options, left)?;
         rounds += 1;
         let finer = &adapted.certified;
         let needed = per_triangle * finer.problem.mesh.triangles.len() as f64;

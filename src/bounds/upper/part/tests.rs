@@ -11,11 +11,29 @@ use crate::bounds::upper::relaxation::groups::Group;
 use crate::bounds::upper::relaxation::patches::grouped;
 use crate::bounds::upper::relaxation::patches::tests::two_blocks;
 use crate::bounds::{Bracket, Complementary, Potential, UpperBound};
-use crate::dual::{Condensed, Options};
+use crate::dual::{self, Condensed, DualSolution, Options};
 use crate::element::{Displacement, Elements, block};
 use crate::problem::Problem;
 use crate::scene::Scene;
-use crate::study::{Certified, certify};
+use crate::statics;
+
+/// A solved problem with the bracket of one process.
+struct Solved {
+    problem: Problem,
+    dual: DualSolution,
+    bracket: Bracket,
+}
+
+impl Solved {
+    fn new(problem: Problem, elements: Elements) -> Self {
+        let statics = statics::check_after(&problem, &|t| elements.degree(t), None).expect("an equilibrium");
+        let options = Options { elements, ..Options::default() };
+        let motions = statics.held_at_vertices(&problem);
+        let dual = dual::solve(&Condensed::default(), &problem, &motions, &options).expect("solves");
+        let bracket = Bracket::new(&problem, &dual);
+        Solved { problem, dual, bracket }
+    }
+}
 
 /// A rank that is a thread.
 struct Thread {
@@ -54,7 +72,7 @@ fn threads(count: usize) -> Vec<Thread> {
 
 /// The bracket that `ranks` threads make, the triangles being divided as `owner` says; relaxing ends near `floor`, or near the lower
 /// bound that they find.
-fn of_parts(of: &Certified, floor: Option<f64>, ranks: usize, owner: &[usize]) -> (LowerTerms, UpperBound) {
+fn of_parts(of: &Solved, floor: Option<f64>, ranks: usize, owner: &[usize]) -> (LowerTerms, UpperBound) {
     let (problem, dual) = (&of.problem, &of.dual);
     let division = Division::new(problem, &dual.moments, owner, ranks).expect("supports agree");
     // As it goes to another process.
@@ -89,11 +107,11 @@ fn ring() -> String {
     case("cases/ring").replace("size = 0.05", "size = 0.1")
 }
 
-fn solved(scene: &str, elements: impl Fn(usize) -> Elements) -> Certified {
+fn solved(scene: &str, elements: impl Fn(usize) -> Elements) -> Solved {
     let scene = Scene::parse(scene, "scene.toml".as_ref()).expect("a scene");
     let problem = Problem::load(scene).expect("a problem");
-    let options = Options { elements: elements(problem.mesh.triangles.len()), ..Options::default() };
-    certify(problem, &Condensed::default(), &options).expect("solves")
+    let elements = elements(problem.mesh.triangles.len());
+    Solved::new(problem, elements)
 }
 
 fn of_degree(degree: usize) -> impl Fn(usize) -> Elements {
@@ -174,7 +192,7 @@ fn ranks_find_the_bounds_of_one_process() {
 
 /// Several ranks and one process find the same.
 #[track_caller]
-fn agree(scene: &str, of: &Certified) {
+fn agree(scene: &str, of: &Solved) {
     let one = of.bracket.free.as_ref().expect("an upper bound");
     for ranks in [1, 3] {
         let (lower, upper) = of_parts(of, None, ranks, &anywhere(one.displacement.len(), ranks, 3));
@@ -233,7 +251,7 @@ fn a_rank_that_lost_a_term_or_found_no_number_is_refused() {
 fn parts_take_the_stiffness_of_the_whole() {
     let scene = Scene::parse(&ring(), "ring.toml".as_ref()).expect("a scene");
     let problem = Problem::load(scene).and_then(|problem| problem.refine_uniform(1)).expect("a finer mesh");
-    let of = certify(problem, &Condensed::default(), &Options::default()).expect("solves");
+    let of = Solved::new(problem, Options::default().elements);
     let one = admissible(&of.problem, &of.dual, f64::MAX, None).expect("an upper bound");
     assert!(of_parts(&of, Some(f64::MAX), 2, &in_a_row(one.len(), 2)).1.displacement == one);
 }
