@@ -147,7 +147,8 @@ pub fn main_of(started: Started) -> Exit {
 
 /// The command line, and the options of its command as they were given.
 fn parsed(words: impl IntoIterator<Item = OsString>) -> Result<(Cli, Given), clap::Error> {
-    let mut definition = Cli::command();
+    // A number below zero is the value of an option, and refused as such.
+    let mut definition = Cli::command().mut_subcommands(|command| command.allow_negative_numbers(true));
     let matches = definition.try_get_matches_from_mut(words)?;
     let cli = Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut definition))?;
     let used = matches.subcommand().and_then(|(name, matches)| Some((definition.find_subcommand(name)?, matches)));

@@ -62,6 +62,11 @@ impl Finding {
 }
 
 impl Finding {
+    /// True if it is read from forces along a contact, in which whatever else is wrong takes part.
+    fn is_of_contact_forces(&self) -> bool {
+        ["/glued", "/open", "/friction-law"].iter().any(|end| self.name.ends_with(end))
+    }
+
     /// True if it asks for forces on a boundary that is a side of a contact named by one of the findings `told`.
     fn is_of_contact_in(&self, told: &[&str]) -> bool {
         let side = self.name.strip_prefix("boundary/").and_then(|rest| rest.strip_suffix("/forces"));
@@ -87,8 +92,7 @@ impl Trial {
     /// it.
     fn leaves(&self, finding: &Finding) -> bool {
         let of_values = self.findings.iter().any(|f| f.name == "value" || f.name.starts_with("displacement/"));
-        let of_forces = ["/glued", "/open", "/friction-law"].iter().any(|end| finding.name.ends_with(end));
-        !of_values && !of_forces
+        !of_values && !finding.is_of_contact_forces()
     }
 }
 
@@ -160,6 +164,10 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
             Err(trials) => {
                 diagnosis.explained = Some(0.0);
                 nearest = choice::nearest(trials);
+                // Forces along contacts tell nothing while most of them belong to something else.
+                if !nearest.is_empty() {
+                    diagnosis.findings.retain(|finding| !finding.is_of_contact_forces());
+                }
             }
         }
     }

@@ -41,6 +41,7 @@ impl Finding {
             },
             // Its sign is what is mistaken most often: 1 + 2ν in place of 1 − 2ν is no change of it.
             "lambda" => value == 0.0 || is_mistyped(value.abs()),
+            _ if self.name == "loads" || self.name.starts_with("load/") => value.abs() <= 10.0_f64.powi(UNITS),
             _ => value.is_finite(),
         }
     }
@@ -107,6 +108,14 @@ mod tests {
         assert!(!trial(&[("support/foot/tangential", 0.4919, 200.0)]).is_possible());
         assert!(!trial(&[("support/foot/tangential", -3.0, 0.0)]).is_possible());
         assert!(!trial(&[("body/b/stiffness", -1.0, 1.0)]).is_possible());
+    }
+
+    #[test]
+    fn loads_are_no_larger_than_units_make_them() {
+        for (found, possible) in [(0.0, true), (-1.0, true), (1e6, true), (-4.8e14, false)] {
+            assert_eq!(trial(&[("loads", found, 1.0)]).is_possible(), possible, "{found}");
+            assert_eq!(trial(&[("load/top/gradient", found, 1.0)]).is_possible(), possible, "{found}");
+        }
     }
 
     #[test]

@@ -4,6 +4,8 @@ use super::Finding;
 
 /// Numbers this close are one: factors are right to two digits.
 const NEAR: f64 = 5e-3;
+/// Factors below this one are rounding, and no unit.
+pub const LEAST_UNIT: f64 = 1e-10;
 /// Decimals of a number in a sentence, and the most that it takes to tell it from another.
 const FEWEST: usize = 3;
 const MOST: usize = 12;
@@ -54,8 +56,8 @@ pub fn share(x: f64) -> String {
 /// Describes the factor `s` of `what`: missing, of the wrong sign, of another unit, or larger.
 pub fn factor(what: &str, s: f64) -> String {
     let thousands = s.abs().log10() / 3.0;
-    let unit = thousands.round() != 0.0 && (thousands - thousands.round()).abs() < 1e-3;
-    if s.abs() < NEAR {
+    let unit = thousands.round() != 0.0 && (thousands - thousands.round()).abs() < 1e-3 && s.abs() > LEAST_UNIT;
+    if s.abs() < NEAR && !unit {
         format!("{what} is missing")
     } else if near(s, -1.0) {
         format!("{what} has the opposite sign")
@@ -85,6 +87,8 @@ mod tests {
         assert_eq!(number_beside(0.30004, 0.3), "0.30004");
         assert_eq!(number_beside(1e-7, 2e-7), "1.000e-7");
         assert!(factor("every load", 1.0001).contains(" 1.0001 times"));
+        assert!(factor("every load", 1e-3).ends_with("which is another unit"));
+        assert!([2e-3, 1e-15].iter().all(|s| factor("every load", *s) == "every load is missing"));
     }
 
     #[test]

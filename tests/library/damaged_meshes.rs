@@ -50,6 +50,27 @@ fn files_that_do_not_follow_their_format() {
         ("f.json", "{\"p\": 3}", "'p' and 't'"),
         ("g.json", "{\"p\": [[0, 0], [1, 0], [0, 1]], \"t\": [[0, 1, 7]]}", "node 7, which is not among its nodes"),
         ("h.vol", "mesh3d\npoints\n5\n0 0 0\n", "points are 1 instead of the 5"),
+        ("more.vol", "mesh3d\npoints\n1\n0 0 0\n1 0 0\n", "points are more than the 1"),
+        (
+            "short.su2",
+            "NDIME= 2\nNELEM= 1\n5 0 1 2\n5 0 2 3\nNPOIN= 4\n0 0\n1 0\n1 1\n0 1\n",
+            "line 5: NELEM= announces 1 rows, and 2 stand",
+        ),
+        (
+            "one.post.msh",
+            "MESH dimension 2 ElemType Triangle Nnode 3\nCoordinates\n1 0 0\n2 1\n",
+            "node 2 has 1 coordinates",
+        ),
+        (
+            "cut.frd",
+            "    1C\n    2C    2    1\n -1         1 0.00000E+00 0.00000E+00 0.00000E+00\n -3\n",
+            "announces 2 nodes, and has 1",
+        ),
+        (
+            "open.frd",
+            "    1C\n    2C    1    1\n -1         1 0.00000E+00 0.00000E+00 0.00000E+00\n 9999\n",
+            "not with -3",
+        ),
         ("i.e", "CDF\x01", "does not follow its format"),
         ("j.post.msh", "MESH dimension 2 ElemType Blob Nnode 3\n", "kind of cell"),
     ] {

@@ -123,3 +123,21 @@ fn node_data_belong_to_the_nodes_that_they_name() {
         assert!(said(&output).split_whitespace().collect::<Vec<_>>().join(" ").contains(found), "{}", said(&output));
     }
 }
+
+#[test]
+fn loads_may_be_integrated_by_the_rule_of_the_stiffness() {
+    assert_eq!(claimed("spun", "spun"), (0, Vec::new()));
+}
+
+#[test]
+fn few_nodes_are_no_excuse_for_another_name() {
+    assert!(
+        explained("four_nodes", "four_nodes")
+            .starts_with("This explains it: plane stress stands in place of plane strain")
+    );
+    let sentence = explained("soft_triangle", "soft_triangle");
+    assert!(
+        sentence.starts_with("This explains it: the stiffness of triangle 2") && sentence.contains("0.1000 times"),
+        "{sentence}"
+    );
+}

@@ -109,8 +109,13 @@ impl SolveOptions {
 
     /// The kind of refinement towards the tolerance.
     pub fn adapt(&self) -> Adapt {
+        self.adapt.unwrap_or(self.adapt_without_words())
+    }
+
+    /// The way of refinement where none is given.
+    pub fn adapt_without_words(&self) -> Adapt {
         let linear = self.method == Solver::Uzawa && self.engine.engine.is_none();
-        self.adapt.unwrap_or(if linear { Adapt::H } else { Adapt::Hp })
+        if linear { Adapt::H } else { Adapt::Hp }
     }
 }
 

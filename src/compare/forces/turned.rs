@@ -43,6 +43,9 @@ impl Rule {
     /// The rule of FEniCSx as run by this program.
     pub const OWN: Self = Rule { triangles: Some(0), points: 3, exact_loads: false };
 
+    /// The index of the rule with one point.
+    pub const ONE_POINT: usize = 1;
+
     /// The rules that a program may have used for `candidate` on cells of one kind, with those of this one on the other.
     pub fn others(self, problem: &Problem, candidate: &Candidate, on: Kind) -> Vec<Self> {
         let own: Vec<Self> = match on {
@@ -248,6 +251,21 @@ pub fn body_forces<'a>(
         }
     });
     loads
+}
+
+impl NodalForces {
+    /// Takes body forces by a rule in the place of exact ones.
+    pub fn sample_body_forces(&mut self, problem: &Problem, candidate: &Candidate, by: Rule) {
+        let of = |body: usize| &problem.scene.bodies[body].body_force;
+        let [exact, sampled] =
+            [true, false].map(|exact_loads| body_forces(problem, candidate, Rule { exact_loads, ..by }, of));
+        for (node, (exact, sampled)) in exact.iter().zip(&sampled).enumerate() {
+            for c in 0..2 {
+                self.load[node][c] += sampled[c] - exact[c];
+                self.left[node][c] -= sampled[c] - exact[c];
+            }
+        }
+    }
 }
 
 /// The forces at the nodes of a displacement of degree 1 or 2, and its energy, by a rule.

@@ -6,7 +6,7 @@ use crate::compare::forces::functions::Functions;
 use crate::compare::forces::{cells, tractions, turned};
 use crate::diagnose::fit::Terms;
 use crate::diagnose::space::Space;
-use crate::diagnose::words::{factor, near, number, times};
+use crate::diagnose::words::{LEAST_UNIT, factor, near, number, times};
 use crate::diagnose::{Finding, Trial};
 use crate::load::{Affine, BodyForce};
 use crate::scene::{Body, Load, Traction};
@@ -36,8 +36,8 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         } else if thickness != 1.0 && (near(s, thickness) || near(s, 1.0 / thickness)) {
             sentence += &format!(", as if the thickness {thickness} were left out on one side");
         }
-        // No modulus is negative.
-        if s > NONE {
+        // No modulus is negative, and what is missing is no unit.
+        if s > LEAST_UNIT {
             sentence += &format!(" (or every Young's modulus {} times)", times(1.0 / s));
         }
         vec![Finding::new(name, Some(s), Some(1.0), sentence)]

@@ -176,16 +176,16 @@ pub fn told(body: &Body, [young, poisson]: [f64; 2], [given_young, given_poisson
         findings.push(Finding::new(format!("body/{}/young", body.name), Some(young), Some(given_young), sentence));
     }
     if !near(poisson, given_poisson) || findings.is_empty() {
-        let sentence = format!(
-            "Poisson's ratio of {} is {} in place of {given_poisson}",
-            body.name,
-            number_beside(poisson, given_poisson)
-        );
+        let found = if poisson.abs() < NO_RATIO { "0".to_string() } else { number_beside(poisson, given_poisson) };
+        let sentence = format!("Poisson's ratio of {} is {found} in place of {given_poisson}", body.name);
         let name = format!("body/{}/poisson", body.name);
         findings.push(Finding::new(name, Some(poisson), Some(given_poisson), sentence));
     }
     findings
 }
+
+/// Ratios that are smaller are none.
+const NO_RATIO: f64 = 1e-4;
 
 /// One factor on all moduli of a body that is not isotropic.
 fn anisotropic<'a>(space: &'a Space<'a>, b: usize, own: Moduli, terms: &mut Terms<'a>) {

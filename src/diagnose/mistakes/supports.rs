@@ -63,7 +63,10 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
             );
             Finding::new(name("missing"), Some(depth), Some(0.0), sentence)
         } else if let Some(s) = prescribed(solution, nodes) {
-            let sentence = format!("the displacement of {on} is {} times the prescribed one", number(s));
+            let sentence = match s.abs() <= SOLVER {
+                true => format!("the prescribed displacement of {on} is not applied: it is zero there"),
+                false => format!("the displacement of {on} is {} times the prescribed one", number(s)),
+            };
             Finding::new(name("displacement"), Some(s), Some(1.0), sentence)
         } else if let Some(stiffness) = spring(&off, &force) {
             let sentence = format!(

@@ -29,7 +29,8 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     trials
 }
 
-/// Part of the squared residual that is left with other displacements; nodes of triangles that touch `lost` do not count.
+/// Part of the squared residual that is left with other displacements; nodes of triangles that touch `lost` do not count, and where these
+/// are most of them nothing is explained.
 fn left(space: &Space<'_>, value: impl Fn(usize) -> [f64; 2], lost: &[usize]) -> f64 {
     let problem = space.problem();
     let internal = space.column(space.own_forces(None, value));
@@ -41,8 +42,13 @@ fn left(space: &Space<'_>, value: impl Fn(usize) -> [f64; 2], lost: &[usize]) ->
             nodes.iter().for_each(|n| counted[*n] = false);
         }
     }
+    if 2 * counted.iter().filter(|counted| !**counted).count() > counted.len() {
+        return 1.0;
+    }
     let term = |(k, (a, b)): (usize, (&f64, &f64))| if counted[k / 2] { (a - b).powi(2) } else { 0.0 };
-    internal.iter().zip(&loads).enumerate().map(term).sum::<f64>() / space.whole()
+    // What the other nodes leave of the residual is explained by nothing.
+    let own: f64 = (0..space.count()).filter(|n| counted[*n]).map(|n| space.square_at(n)).sum();
+    internal.iter().zip(&loads).enumerate().map(term).sum::<f64>() / space.whole().min(own)
 }
 
 /// Nodes in the order of the file.

@@ -13,6 +13,9 @@ use crate::scene::Note;
 /// Deviation from the plane, and of a side from its chord, in parts of a length, that counts as round-off.
 const ROUND_OFF: f64 = 1e-9;
 
+/// Of the length of a side the distance from its corners at which no node between them lies, however curved the side is.
+const FARTHEST: f64 = 2.0;
+
 /// The shapes of cells that are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::mesh) enum Kind {
@@ -141,7 +144,9 @@ impl Content {
             }
             let corners = element.kind.corners();
             if nodes.len() > corners {
-                counts.second_order(element.kind, &nodes, &raw.points);
+                counts.second_order(element.kind, &nodes, &raw.points).map_err(|what| {
+                    MeshError::file(file, what, "write the nodes of a cell as Gmsh has them: corners, the middles of the sides from corner to corner, centre")
+                })?;
             }
             let cells = cut(file, element, &nodes[..corners], &raw.points, &mut counts)?;
             if let ([a, b, c, d], [_, _]) = (&nodes[..corners], cells.triangles.as_slice()) {
@@ -284,7 +289,10 @@ struct Counts {
 
 impl Counts {
     /// Counts a second-order cell, and those of its sides that are curved.
-    fn second_order(&mut self, kind: Kind, nodes: &[usize], points: &[[f64; 2]]) {
+    ///
+    /// # Errors
+    /// A description of a node that is farther from the corners of its side than they are from each other.
+    fn second_order(&mut self, kind: Kind, nodes: &[usize], points: &[[f64; 2]]) -> Result<(), String> {
         self.second_order += usize::from(kind != Kind::Line);
         let corners = kind.corners();
         for (i, &node) in nodes[corners..].iter().take(kind.sides()).enumerate() {
@@ -292,6 +300,12 @@ impl Counts {
             let [a, b, middle] = [ends[0], ends[1], node].map(|n| points[n]);
             let (along, from) = ([b[0] - a[0], b[1] - a[1]], [middle[0] - a[0], middle[1] - a[1]]);
             let length = along[0].hypot(along[1]);
+            if from[0].hypot(from[1]) > FARTHEST * length {
+                return Err(format!(
+                    "the node at ({}, {}) should be between the corners at ({}, {}) and ({}, {}), and is farther away than their distance",
+                    middle[0], middle[1], a[0], a[1], b[0], b[1]
+                ));
+            }
             let beside = (along[0] * from[1] - along[1] * from[0]).abs() / length;
             if beside > ROUND_OFF * length {
                 self.curved.insert([ends[0].min(ends[1]), ends[0].max(ends[1])]);
@@ -300,6 +314,7 @@ impl Counts {
                 }
             }
         }
+        Ok(())
     }
 
     fn notes(self) -> Vec<Note> {

@@ -203,11 +203,11 @@ impl<'a> Outline<'a> {
     /// The error for a boundary that chose no edge.
     pub(super) fn nothing(&self, boundary: &Boundary) -> MeshError {
         let kind = match boundary.edges {
-            Edges::Line(_) => "on this segment",
-            Edges::Box(_) => "inside this box",
-            Edges::Circle { .. } => "with its ends on this circle",
-            Edges::Normal { .. } => "with such a normal",
-            Edges::Group(_) => "of this group",
+            Edges::Line(_) => "lies on this segment",
+            Edges::Box(_) => "lies inside this box",
+            Edges::Circle { .. } => "lies with its ends on this circle",
+            Edges::Normal { .. } => "has such a normal",
+            Edges::Group(_) => "belongs to this group",
         };
         let offered = self.sides.iter().filter(|side| self.offered(side, boundary));
         let points = offered.flat_map(|side| side.vertices).map(|v| self.scene.as_written(self.raw.points[v]));
@@ -217,7 +217,7 @@ impl<'a> Outline<'a> {
             high = [high[0].max(p[0]), high[1].max(p[1])];
         }
         let of = boundary.body.map_or(String::new(), |body| format!(" of body '{}'", self.scene.bodies[body].name));
-        let what = format!("has no edge: none of the outline{of} lies {kind}");
+        let what = format!("has no edge: none of the outline{of} {kind}");
         let remedy = match low[0] <= high[0] {
             true => format!(
                 "the outline{of} lies between ({}, {}) and ({}, {}), and an edge is taken where both its ends are",

@@ -65,6 +65,13 @@ pub enum ReportError {
     },
 }
 
+impl ReportError {
+    /// True if there can be no output at the place that was named.
+    pub fn is_of_the_place(&self) -> bool {
+        matches!(self, ReportError::NotAFolder { .. } | ReportError::Create { .. })
+    }
+}
+
 /// The names of the files that every run leaves.
 pub const NAMES: [&str; 5] = ["report.json", "report.html", "junit.xml", "summary.md", "fields.vtu"];
 

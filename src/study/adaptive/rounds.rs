@@ -43,7 +43,7 @@ const WORTH_A_SOLVE: f64 = 1.1;
 const DEEPEST: f64 = 1e-6;
 
 /// The time that a mesh takes grows like this power of its unknowns.
-const TIME: f64 = 1.4;
+pub const TIME: f64 = 1.4;
 
 /// A run ends where more than this part of the error cannot be refined away, and with more than the other part where the last
 /// mesh was hardly worth its unknowns: the fields differ around such a place, too.

@@ -18,6 +18,7 @@ mod summary;
 use std::time::Instant;
 
 use super::adaptive::Adapted;
+use super::adaptive::rounds::TIME;
 use super::certified::{Certified, StudyError};
 use crate::bounds::{Bracket, UpperBound};
 use crate::compare::BoundDistance;
@@ -175,8 +176,7 @@ pub fn solve_coulomb_to(
         let before = begin.elapsed().as_secs_f64();
         let (certified, mut coulomb) =
             solve_coulomb(&problem, method, &options, |held| certify(held, method, &options), &mut told)?;
-        let per_triangle =
-            (begin.elapsed().as_secs_f64() - before) / certified.problem.mesh.triangles.len().max(1) as f64;
+        let (took, coarse) = (begin.elapsed().as_secs_f64() - before, unknowns(&certified));
         let upper = certified.bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper());
         let met = tolerance.is_none_or(|tolerance| certified.bracket.relative_error(upper) <= tolerance);
         if met || stopped.is_some() || rounds == ROUNDS {
@@ -187,7 +187,7 @@ pub fn solve_coulomb_to(
         let adapted = adapt(certified.problem, &options, left)?;
         rounds += 1;
         let finer = &adapted.certified;
-        let needed = per_triangle * finer.problem.mesh.triangles.len() as f64;
+        let needed = took * (unknowns(finer) / coarse).powf(TIME);
         if seconds.is_some_and(|most| begin.elapsed().as_secs_f64() + needed > most) {
             coulomb.distances = distances(&finer.problem, &finer.dual);
             history.extend(adapted.history);
@@ -202,6 +202,12 @@ pub fn solve_coulomb_to(
         history.extend(adapted.history);
         (problem, stopped, advice) = (adapted.certified.problem, adapted.stopped, adapted.advice);
     }
+}
+
+/// As many as three edges for each triangle, shared by two, have of its degree.
+fn unknowns(certified: &Certified) -> f64 {
+    let stress = &certified.dual.stress;
+    (0..stress.len()).map(|t| 1.5 * (stress.degree(t) + 1) as f64).sum()
 }
 
 /// The upper bound of sides that stick; none where its displacement slides by more than rounding. The work of friction on what rounding

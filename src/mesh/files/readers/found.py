@@ -36,6 +36,8 @@ class Found:
         point = [float(x) for x in coordinates]
         if not all(map(math.isfinite, point)):
             raise Unreadable(f"node {tag} has a coordinate that is no finite number")
+        if len(point) < 2 or self.points and len(point) != len(self.points[0]):
+            raise Unreadable(f"node {tag} has {len(point)} coordinates" + (f", and the first one {len(self.points[0])}" if self.points else ""))
         if tag in self.index:
             other = self.points[self.index[tag]]
             if other != point:

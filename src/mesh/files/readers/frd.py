@@ -49,14 +49,27 @@ class Frd:
         if form >= 2:
             for _ in range(count):
                 tag, *row = self.take("<i" + ("d" if form == 3 else "f") * width)
+                self.once(into, tag)
                 into[tag] = row
             return
         end = 13 if form == 1 else 8
         while self.peek().startswith(" -1"):
             line = self.line()
+            self.once(into, int(line[3:end]))
             into[int(line[3:end])] = frd_reals(line, end, width)
             while self.peek().startswith(" -2"):
                 into[int(line[3:end])] += frd_reals(self.line(), end, width)
+
+    def once(self, into, tag):
+        if tag in into:
+            raise Unreadable(f"node {tag} is given twice in one block")
+
+    def ends(self, what, count, present, form):
+        """Refuses a block of text that is cut off, holds other lines, or fewer or more rows than it announces."""
+        if form < 2 and not self.peek().startswith(" -3"):
+            raise Unreadable(f"its {what} end with '{self.line()[:40]}' behind {present} rows, and not with -3")
+        if present != count:
+            raise Unreadable(f"it announces {count} {what}, and has {present}")
 
     def elements(self, count, form):
         if form >= 2:
@@ -87,8 +100,10 @@ class Frd:
                 count, form = int(words[1]), int(words[-1]) if len(words) > 2 else 1
                 if key == "2C":
                     self.rows(self.nodes, count, form, 3)
+                    self.ends("nodes", count, len(self.nodes), form)
                 else:
                     self.elements(count, form)
+                    self.ends("elements", count, len(self.cells), form)
             elif key.startswith("100C"):
                 count, form = int(line[24:36]), int(words[-1])
             elif line.startswith(" -4"):
@@ -98,6 +113,7 @@ class Frd:
                     width += 0 if component.rstrip().endswith("ALL") else 1
                 into = {}
                 self.rows(into, count, form, width)
+                self.ends(f"values of {name}", count, len(into), form)
                 if name == "DISP":
                     self.values = into
         return self

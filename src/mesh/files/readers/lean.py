@@ -52,6 +52,8 @@ def read_with_meshio(source, target):
     grids = xdmf_grids(source) if source.lower().endswith((".xdmf", ".xmf")) else None
     if grids is not None:
         return grids
+    if source.lower().endswith(".su2"):
+        count_rows_of_su2(source)
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
@@ -71,6 +73,24 @@ def read_with_meshio(source, target):
         elif (cells.type, nodes) in LAGRANGE:
             mesh.cells[block] = meshio.CellBlock(LAGRANGE[cells.type, nodes], cells.data)
     return mesh
+
+
+def count_rows_of_su2(source):
+    """Refuses a file of SU2 in which more or fewer rows stand than a section announces: meshio reads what is announced."""
+    section, announced, rows = None, 0, 0
+    for number, line in enumerate([*lines_of(source), "END="], 1):
+        text = line.split("%")[0].strip()
+        key, equals, value = text.partition("=")
+        if not equals:
+            rows += bool(text)
+            continue
+        if section and rows != announced:
+            raise Unreadable(f"line {number}: {section}= announces {announced} rows, and {rows} stand below it: correct the number, or write the file again")
+        key, value = key.strip(), value.split()
+        if key in ("NELEM", "NPOIN", "MARKER_ELEMS") and value and value[0].isdigit():
+            section, announced, rows = key, int(value[0]), 0
+        else:
+            section = None
 
 
 def readable(source, target):

@@ -167,8 +167,12 @@ def read_ngsolve(source):
             if len(tables[key]) != count:
                 raise Unreadable(f"its {key} are {len(tables[key])} instead of the {count} it announces")
             at += 1 + count
+            if at < len(lines) and re.fullmatch(r"[-+.\deE\s]+", lines[at]):
+                raise Unreadable(f"its {key} are more than the {count} it announces: '{lines[at]}' stands behind them")
     names = {key: {int(row[0]): row[1] for row in tables.get(key, []) if len(row) > 1} for key in ("materials", "bcnames")}
     for tag, row in enumerate(tables.get("points", []), 1):
+        if len(row) < 3:
+            raise Unreadable(f"point {tag} has {len(row)} coordinates instead of 3")
         found.point(tag, [real(x) for x in row[:3]])
     solids = {4: "tetrahedron", 10: "tetrahedron with 10 nodes", 8: "hexahedron", 6: "prism", 5: "pyramid"}
     for row in tables.get("volumeelements", []):
@@ -239,6 +243,11 @@ def read_elmer(source):
             return []
         return [line for line in lines_of(path) if line.strip()]
 
+    announced = " ".join(rows("mesh.header", needed=False)).split()[:3]
+    for name, count in zip(("mesh.nodes", "mesh.elements", "mesh.boundary"), announced):
+        present = len(rows(name, needed=name != "mesh.boundary"))
+        if int(count) != present:
+            raise Unreadable(f"mesh.header announces {count} rows of {name}, and it has {present}")
     names = [{}, {}]
     kind = 0
     for line in rows("mesh.names", needed=False):
