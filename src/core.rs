@@ -22,3 +22,9 @@ pub mod scene;
 pub mod sets;
 pub mod statics;
 pub mod vector;
+
+/// A file of the repository, for tests: they run in the folder of their package or of the repository.
+#[cfg(test)]
+fn in_repository(path: &str) -> std::path::PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}

@@ -77,6 +77,7 @@ pub fn block(degree: usize) -> &'static dyn EquilibriumElement {
 /// Every mode holds itself in balance: the force of its tractions on the three sides is zero.
 ///
 /// ```
+/// # use hypercircle_core as hypercircle;
 /// use hypercircle::element::{Material, block};
 /// use hypercircle::load::BodyForce;
 /// use hypercircle::scene::Kinematics;

@@ -20,6 +20,7 @@ use crate::vector::norm;
 /// A force per volume on a body.
 ///
 /// ```
+/// # use hypercircle_core as hypercircle;
 /// use hypercircle::load::{BodyForce, Rotation};
 ///
 /// let turning = BodyForce::constant([0.0, -1.0]).with_rotation(Rotation { density: 2.0, omega: 3.0, about: [1.0, 0.0] });

@@ -138,7 +138,7 @@ fn degrees_and_ranks_are_checked() {
 
 #[test]
 fn the_package_is_carried_completely() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("reference/hypercircle_reference");
+    let folder = crate::in_repository("reference/hypercircle_reference");
     let mut present: Vec<String> = fs::read_dir(folder)
         .unwrap()
         .filter_map(|entry| entry.unwrap().file_name().into_string().ok())

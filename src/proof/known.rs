@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn keys_that_the_checker_does_not_know_are_named() {
-        let text = std::fs::read_to_string("cases/two_blocks.toml").unwrap();
+        let text = std::fs::read_to_string(crate::in_repository("cases/two_blocks.toml")).unwrap();
         assert_eq!(unknown(&text), None);
         let with = |from: &str, to: &str| unknown(&text.replacen(from, to, 1)).unwrap();
         assert_eq!(with("poisson = 0.3", "poisson = 0.3\nplasticity = 1"), "`plasticity` in `bodies`");

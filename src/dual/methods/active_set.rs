@@ -256,7 +256,7 @@ mod tests {
     use crate::scene::Scene;
 
     fn two_blocks() -> Problem {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/two_blocks.toml");
+        let path = crate::in_repository("cases/two_blocks.toml");
         Problem::load(Scene::read(&path).expect("a scene")).expect("a problem")
     }
 

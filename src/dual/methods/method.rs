@@ -15,6 +15,7 @@ use crate::problem::{ContactPair, Problem};
 /// A way to find λ_h. All of them solve the same strictly convex problem and must agree.
 ///
 /// ```
+/// # use hypercircle_core as hypercircle;
 /// use std::path::Path;
 ///
 /// use hypercircle::bounds::complementary;
@@ -23,6 +24,7 @@ use crate::problem::{ContactPair, Problem};
 /// use hypercircle::scene::Scene;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// # std::env::set_current_dir("..")?;
 /// let problem = Problem::load(Scene::read(Path::new("cases/two_blocks.toml"))?)?;
 /// let methods: [&dyn DualMethod; 2] = [&Condensed::default(), &ActiveSet::default()];
 /// let [a, b] = methods.map(|method| solve(method, &problem, &[], &Options::default()));

@@ -166,8 +166,10 @@ pub fn adapt(
     let mut forecast = Forecast::default();
     let mut last: Option<Measured> = None;
     let mut shortest = SHORTEST;
-    // Quantities that a report will have are found on the last mesh, for as much time as several solves.
-    let mut share_of_answers = ANSWER * stage.problem.scene.quantities.len() as f64;
+    // Quantities that a report will have are found on the last mesh, for as much time as several solves; one that only sharpens the lower bound
+    // of a run whose upper bound is known has none.
+    let asked = if goal.known_upper.is_none() { stage.problem.scene.quantities.len() } else { 0 };
+    let mut share_of_answers = ANSWER * asked as f64;
     let after = |seconds: f64| start.checked_add(Duration::try_from_secs_f64(seconds).ok()?);
     let by_then = goal.max_seconds.and_then(after);
     let by_first = goal.max_seconds.and_then(|most| after(PATIENCE_WITH_THE_FIRST * most));

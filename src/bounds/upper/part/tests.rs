@@ -99,7 +99,7 @@ fn of_parts(of: &Solved, floor: Option<f64>, ranks: usize, owner: &[usize]) -> (
 }
 
 fn case(name: &str) -> String {
-    std::fs::read_to_string(format!("{name}.toml")).expect("a scene")
+    std::fs::read_to_string(crate::in_repository(&format!("{name}.toml"))).expect("a scene")
 }
 
 /// Rings in coarse triangles.

@@ -1,6 +1,6 @@
 //! Files that gmsh wrote, and what becomes of them when they are damaged.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use proptest::prelude::*;
 
@@ -8,8 +8,7 @@ use super::parse;
 use crate::mesh::RawMesh;
 
 fn fixture(name: &str) -> Vec<u8> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/meshes").join(name);
-    std::fs::read(path).expect("a fixture")
+    std::fs::read(crate::in_repository("tests/meshes").join(name)).expect("a fixture")
 }
 
 fn read(name: &str) -> RawMesh {
