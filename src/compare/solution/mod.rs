@@ -153,7 +153,7 @@ impl<'a> Solution<'a> {
         for kind in [Kind::Triangles, Kind::Quadrilaterals] {
             // One point is too few for quadratic fields.
             let enough =
-                |rule: &Rule| !rule.exact_loads && !(candidate.degree == 2 && rule.triangles == Some(Rule::ONE_POINT));
+                |rule: &Rule| !rule.exact_loads && (candidate.degree < 2 || rule.triangles != Some(Rule::ONE_POINT));
             for rule in own.others(problem, candidate, kind).into_iter().filter(enough) {
                 let made = Self::made_by(problem, candidate, strain, points, Some(rule))?;
                 if made.residual() < best.residual() {
