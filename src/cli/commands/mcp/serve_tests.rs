@@ -96,12 +96,14 @@ fn what_cannot_be_called_is_refused_and_the_next_call_is_answered() {
             .collect()
     };
     assert_eq!(codes(Value::Null), [-32700]);
-    for (id, code) in
-        [(1, -32602), (2, -32602), (3, -32602), (4, -32602), (5, -32601), (6, -32002), (139, -32000), (7, 0)]
-    {
+    for (id, code) in [(1, -32602), (2, -32602), (3, -32602), (4, -32602), (5, -32601), (6, -32002), (7, 0)] {
         assert_eq!(codes(json!(id)), [code], "{id}");
     }
-    assert_eq!(codes(json!(101)), [-32000], "32 wait by then");
+    // 32 wait, and one runs as soon as it is taken.
+    let refused: Vec<i64> = (100..140).filter(|id| *id != 101).flat_map(|id| codes(json!(id))).collect();
+    assert!((7..=8).contains(&refused.len()) && refused.iter().all(|code| *code == -32000), "{refused:?}");
+    // It is one too many, or has the name of one that waits.
+    assert!([vec![-32000], vec![-32600]].contains(&codes(json!(101))), "{:?}", codes(json!(101)));
 }
 
 #[test]
