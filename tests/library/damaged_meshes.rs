@@ -62,11 +62,6 @@ fn files_that_do_not_follow_their_format() {
             "node 2 has 1 coordinates",
         ),
         (
-            "cut.frd",
-            "    1C\n    2C    2    1\n -1         1 0.00000E+00 0.00000E+00 0.00000E+00\n -3\n",
-            "announces 2 nodes, and has 1",
-        ),
-        (
             "open.frd",
             "    1C\n    2C    1    1\n -1         1 0.00000E+00 0.00000E+00 0.00000E+00\n 9999\n",
             "not with -3",

@@ -64,12 +64,10 @@ class Frd:
         if tag in into:
             raise Unreadable(f"node {tag} is given twice in one block")
 
-    def ends(self, what, count, present, form):
-        """Refuses a block of text that is cut off, holds other lines, or fewer or more rows than it announces."""
+    def ends(self, what, present, form):
+        """Refuses a block of text that is cut off, or holds other lines."""
         if form < 2 and not self.peek().startswith(" -3"):
             raise Unreadable(f"its {what} end with '{self.line()[:40]}' behind {present} rows, and not with -3")
-        if present != count:
-            raise Unreadable(f"it announces {count} {what}, and has {present}")
 
     def elements(self, count, form):
         if form >= 2:
@@ -100,10 +98,10 @@ class Frd:
                 count, form = int(words[1]), int(words[-1]) if len(words) > 2 else 1
                 if key == "2C":
                     self.rows(self.nodes, count, form, 3)
-                    self.ends("nodes", count, len(self.nodes), form)
+                    self.ends("nodes", len(self.nodes), form)
                 else:
                     self.elements(count, form)
-                    self.ends("elements", count, len(self.cells), form)
+                    self.ends("elements", len(self.cells), form)
             elif key.startswith("100C"):
                 count, form = int(line[24:36]), int(words[-1])
             elif line.startswith(" -4"):
@@ -113,7 +111,7 @@ class Frd:
                     width += 0 if component.rstrip().endswith("ALL") else 1
                 into = {}
                 self.rows(into, count, form, width)
-                self.ends(f"values of {name}", count, len(into), form)
+                self.ends(f"values of {name}", len(into), form)
                 if name == "DISP":
                     self.values = into
         return self
