@@ -149,19 +149,20 @@ impl<'a> Solution<'a> {
             return Ok(exact);
         }
         let mut own = Rule { points: exact.points.unwrap_or(Rule::OWN.points), ..Rule::OWN };
-        let (points, mut best) = (exact.points, exact);
+        let (points, mut best) = (exact.points, None::<Self>);
         for kind in [Kind::Triangles, Kind::Quadrilaterals] {
             // One point is too few for quadratic fields.
             let enough =
                 |rule: &Rule| !rule.exact_loads && (candidate.degree < 2 || rule.triangles != Some(Rule::ONE_POINT));
             for rule in own.others(problem, candidate, kind).into_iter().filter(enough) {
                 let made = Self::made_by(problem, candidate, strain, points, Some(rule))?;
-                if made.residual() < best.residual() {
-                    (best, own) = (made, rule);
+                if best.as_ref().is_none_or(|best| made.residual() < best.residual()) {
+                    (best, own) = (Some(made), rule);
                 }
             }
         }
-        Ok(best)
+        // A field that is none by any rule is told by what exact integrals leave.
+        Ok(best.filter(|best| best.residual() <= best.allowed()).unwrap_or(exact))
     }
 
     /// As [`Self::new`], with one of the rules that the program may have used on quadrilaterals.
