@@ -22,7 +22,7 @@ use crate::report::{self, HistoryRow};
 use crate::scene::{MeshSource, Normals, Scene};
 use crate::study;
 use crate::study::outlook;
-use crate::study::{Adapt, Adapted, Admission, Answer, Certified, Coulomb, Goal, OtherEnd, Sharpened, StudyError};
+use crate::study::{Adapted, Admission, Answer, Certified, Coulomb, Goal, OtherEnd, Sharpened, StudyError};
 
 /// A scene on its way through a command.
 pub struct Session {
@@ -110,10 +110,7 @@ impl Session {
     pub fn solve(&self, solve: &SolveOptions, limits: &Limits, folder: Option<&Path>) -> Result<DualRun, CliError> {
         refuse_unknown(&self.scene, solve.tolerance_of.iter().map(|of| of.name.as_str()))?;
         self.refuse_ranges()?;
-        if solve.adapt == Some(Adapt::Hp) && solve.adapt_without_words() == Adapt::H {
-            let message = "--method uzawa solves with linear stresses, and --adapt hp raises their degrees";
-            return Err(CliError::stopped(Exit::BadInput, message, "leave --adapt out, or choose another --method"));
-        }
+        solve.refuse_degrees_of_uzawa()?;
         self.progress.phase("reading the mesh");
         // Quantities and finer meshes begin with what an upper bound in this process leaves.
         let alone = solve.is_adaptive() || !self.scene.quantities.is_empty();

@@ -202,25 +202,20 @@ impl<'a> Space<'a> {
     /// Nodal forces of the stresses of the bodies as the scene has them for displacements `value`: of the given triangles, or of all.
     pub fn own_forces(&self, of: Option<&[usize]>, value: impl Fn(usize) -> [f64; 2]) -> Vec<[f64; 2]> {
         let (problem, solution) = (self.problem(), self.solution);
+        if let Some(rule) = solution.rule {
+            let materials = problem.materials();
+            let counted = |t: usize| of.is_none_or(|of| of.contains(&t));
+            return turned::stress_forces(problem, solution.candidate, rule, counted, |at| {
+                let values: Vec<[f64; 2]> = at.nodes.iter().map(|n| value(*n)).collect();
+                Some(materials[at.body].revolved().stress(at.with(&values).strain().0))
+            });
+        }
         let mut forces = vec![[0.0; 2]; self.count()];
-        let Some(rule) = solution.rule else {
-            let all = 0..if of.is_some() { 0 } else { problem.mesh.triangles.len() };
-            for t in of.into_iter().flatten().copied().chain(all) {
-                let moduli = Moduli::of_body(problem, &problem.scene.bodies[problem.mesh.body[t]]);
-                self.add_element(t, moduli, &value, |node, f| (0..2).for_each(|c| forces[node][c] += f[c]));
-            }
-            return forces;
-        };
-        let materials = problem.materials();
-        let counted = |t: usize| of.is_none_or(|of| of.contains(&t));
-        turned::points_of(problem, solution.candidate, rule, counted, |at| {
-            let values: Vec<[f64; 2]> = at.nodes.iter().map(|n| value(*n)).collect();
-            let stress = materials[at.body].revolved().stress(at.with(&values).strain().0);
-            for (i, &node) in at.nodes.iter().enumerate() {
-                let own = at.force(i, stress);
-                (0..2).for_each(|c| forces[node][c] += at.weight * at.radius * own[c]);
-            }
-        });
+        let all = 0..if of.is_some() { 0 } else { problem.mesh.triangles.len() };
+        for t in of.into_iter().flatten().copied().chain(all) {
+            let moduli = Moduli::of_body(problem, &problem.scene.bodies[problem.mesh.body[t]]);
+            self.add_element(t, moduli, &value, |node, f| (0..2).for_each(|c| forces[node][c] += f[c]));
+        }
         forces
     }
 

@@ -109,13 +109,24 @@ impl SolveOptions {
 
     /// The kind of refinement towards the tolerance.
     pub fn adapt(&self) -> Adapt {
-        self.adapt.unwrap_or(self.adapt_without_words())
+        self.adapt.unwrap_or(if self.is_linear() { Adapt::H } else { Adapt::Hp })
     }
 
-    /// The way of refinement where none is given.
-    pub fn adapt_without_words(&self) -> Adapt {
-        let linear = self.method == Solver::Uzawa && self.engine.engine.is_none();
-        if linear { Adapt::H } else { Adapt::Hp }
+    /// True if the method has linear stresses alone.
+    fn is_linear(&self) -> bool {
+        self.method == Solver::Uzawa && self.engine.engine.is_none()
+    }
+
+    /// Refuses to raise degrees for a method that has none to raise.
+    ///
+    /// # Errors
+    /// Bad input.
+    pub fn refuse_degrees_of_uzawa(&self) -> Result<(), CliError> {
+        if self.adapt != Some(Adapt::Hp) || !self.is_linear() {
+            return Ok(());
+        }
+        let message = "--method uzawa solves with linear stresses, and --adapt hp raises their degrees";
+        Err(CliError::stopped(Exit::BadInput, message, "leave --adapt out, or choose another --method"))
     }
 }
 

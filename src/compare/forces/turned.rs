@@ -1,4 +1,4 @@
-//! Nodal forces of displacement models of bodies of revolution, by the rule that a program integrates with.
+//! Nodal forces of displacement models of bodies of revolution, and of body forces in slices, by the rule that a program integrates with.
 //!
 //! Integrands with v_r/r are rational. A displacement model integrates them by a rule and minimises the energy that this rule gives: its
 //! identities hold with the same rule, and bounds with enclosed integrals, as for every field. FEniCSx is given the rule of this program;
@@ -231,6 +231,25 @@ pub fn points_of(
 /// Number of nodes of `candidate`.
 pub fn count(problem: &Problem, candidate: &Candidate) -> usize {
     problem.mesh.points.len() + if candidate.degree == 2 { problem.mesh.edges.len() } else { 0 }
+}
+
+/// ∫ s:e(φ) of the nodes for the stress that `stress` gives at every point of the cells that are `counted`, as [`points_of`] has them.
+pub fn stress_forces(
+    problem: &Problem,
+    candidate: &Candidate,
+    by: Rule,
+    counted: impl Fn(usize) -> bool,
+    stress: impl Fn(&At<'_>) -> Option<[f64; 4]>,
+) -> Vec<[f64; 2]> {
+    let mut forces = vec![[0.0; 2]; count(problem, candidate)];
+    points_of(problem, candidate, by, counted, |at| {
+        let Some(s) = stress(at) else { return };
+        for (i, &node) in at.nodes.iter().enumerate() {
+            let own = at.force(i, s);
+            (0..2).for_each(|c| forces[node][c] += at.weight * at.radius * own[c]);
+        }
+    });
+    forces
 }
 
 /// Nodal forces of the body force that `of` names for each body.

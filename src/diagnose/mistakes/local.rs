@@ -68,21 +68,17 @@ impl<'a> Places<'a> {
         let hold = solution.hold(node);
         let value = solution.candidate.value(node);
         let enough = (SOLVER + solution.candidate.precision) * solution.reference;
-        if distance(hold.impose(value), value) <= enough
-            && hold.project([1.0, 0.0]) == [0.0; 2]
-            && hold.project([0.0, 1.0]) == [0.0; 2]
-        {
+        // What a support prescribes and the field meets is right.
+        let met = distance(hold.impose(value), value) <= enough;
+        let [first, second] = [[1.0, 0.0], [0.0, 1.0]].map(|unit| if met { hold.project(unit) } else { unit });
+        if first == [0.0; 2] && second == [0.0; 2] {
             return None;
         }
-        let unit = |c: usize| {
-            let unit = [[1.0, 0.0], [0.0, 1.0]][c];
-            // What a support prescribes and the field meets is right.
-            let unit = if distance(hold.impose(value), value) <= enough { hold.project(unit) } else { unit };
+        let column = |unit: [f64; 2]| {
             let value = |n: usize| if n == node { unit } else { [0.0; 2] };
-            (unit, self.space.column(self.space.own_forces(Some(&self.triangles_at[node]), value)))
+            self.space.column(self.space.own_forces(Some(&self.triangles_at[node]), value))
         };
-        let [(first, one), (second, two)] = [unit(0), unit(1)];
-        let (x, left) = fit(&[&one, &two], &self.space.residual, self.space.square);
+        let (x, left) = fit(&[&column(first), &column(second)], &self.space.residual, self.space.square);
         let x = [0, 1].map(|c| x[0] * first[c] + x[1] * second[c]);
         let size = x[0].hypot(x[1]);
         let off = [0, 1].map(|c| if x[c].abs() > 1e-6 * size { 0.0 - x[c] } else { 0.0 });

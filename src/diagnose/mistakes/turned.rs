@@ -183,15 +183,7 @@ impl<'a> Columns<'a> {
 
     /// ∫ s:e(φ) of the nodes for a stress at every point.
     fn summed(&self, stress: impl Fn(&turned::At<'_>) -> Option<[f64; 4]>) -> Vec<[f64; 2]> {
-        let mut forces = vec![[0.0; 2]; self.space.count()];
-        turned::points(self.problem(), self.space.solution.candidate, self.rule, |at| {
-            let Some(s) = stress(at) else { return };
-            for (i, &node) in at.nodes.iter().enumerate() {
-                let own = at.force(i, s);
-                (0..2).for_each(|c| forces[node][c] += at.weight * at.radius * own[c]);
-            }
-        });
-        forces
+        turned::stress_forces(self.problem(), self.space.solution.candidate, self.rule, |_| true, stress)
     }
 
     /// All loads, with the weight r or its mean.

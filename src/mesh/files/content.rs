@@ -291,7 +291,7 @@ impl Counts {
     /// Counts a second-order cell, and those of its sides that are curved.
     ///
     /// # Errors
-    /// A description of a node that is farther from the corners of its side than they are from each other.
+    /// A description of a node that is farther than [`FARTHEST`] from the corners of its side.
     fn second_order(&mut self, kind: Kind, nodes: &[usize], points: &[[f64; 2]]) -> Result<(), String> {
         self.second_order += usize::from(kind != Kind::Line);
         let corners = kind.corners();
@@ -302,7 +302,7 @@ impl Counts {
             let length = along[0].hypot(along[1]);
             if from[0].hypot(from[1]) > FARTHEST * length {
                 return Err(format!(
-                    "the node at ({}, {}) should be between the corners at ({}, {}) and ({}, {}), and is farther away than their distance",
+                    "the node at ({}, {}) should be between the corners at ({}, {}) and ({}, {}), and is more than twice their distance away",
                     middle[0], middle[1], a[0], a[1], b[0], b[1]
                 ));
             }

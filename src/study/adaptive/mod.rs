@@ -7,6 +7,7 @@
 //! tolerance is reached and nothing else.
 
 pub(super) mod admission;
+mod answering;
 pub(super) mod forecast;
 pub(super) mod indicators;
 pub(super) mod outlook;
@@ -30,6 +31,7 @@ use crate::mesh::refinement::bisect::RefinementEdges;
 use crate::problem::Problem;
 use crate::report::HistoryRow;
 use admission::Admission;
+use answering::Answering;
 use forecast::Forecast;
 use indicators::Indicators;
 use outlook::outlook;
@@ -49,11 +51,6 @@ const LONGEST: f64 = 1e-5;
 /// How many times the limit in seconds a method may take for the first mesh before it begins no further factorisation: a
 /// late result is better than none, a contact state that never settles is not worth waiting for.
 const PATIENCE_WITH_THE_FIRST: f64 = 3.0;
-
-/// Seconds that the interval of a quantity takes, in those of a mesh, where none was measured …
-const ANSWER: f64 = 2.0;
-/// … as on meshes that take no more than this part of the seconds that there are.
-const SMALL: f64 = 0.02;
 
 /// A mesh that makes the error smaller by less than this power of its unknowns is hardly worth them.
 const STALLED: f64 = 0.1;
@@ -166,10 +163,7 @@ pub fn adapt(
     let mut forecast = Forecast::default();
     let mut last: Option<Measured> = None;
     let mut shortest = SHORTEST;
-    // Quantities that a report will have are found on the last mesh, for as much time as several solves; one that only sharpens the lower bound
-    // of a run whose upper bound is known has none.
-    let asked = if goal.known_upper.is_none() { stage.problem.scene.quantities.len() } else { 0 };
-    let mut share_of_answers = ANSWER * asked as f64;
+    let mut answering = Answering::new(goal, stage.problem.scene.quantities.len());
     let after = |seconds: f64| start.checked_add(Duration::try_from_secs_f64(seconds).ok()?);
     let by_then = goal.max_seconds.and_then(after);
     let by_first = goal.max_seconds.and_then(|most| after(PATIENCE_WITH_THE_FIRST * most));
@@ -208,17 +202,9 @@ pub fn adapt(
         }
         let spent = start.elapsed().as_secs_f64();
         let mesh = (&certified.problem, &solved.solved.elements);
-        // What quantities took is part of it, and a finer mesh takes it again.
-        let took = began.elapsed().as_secs_f64();
-        if share_of_answers > 0.0 && goal.max_seconds.is_some_and(|most| took <= SMALL * most) {
-            let asked = Instant::now();
-            answers(certified, options, |_| true);
-            let seconds = asked.elapsed().as_secs_f64();
-            if seconds > 0.0 && took > 0.0 {
-                share_of_answers = seconds / took;
-            }
-        }
-        let seconds = goal.max_seconds.map(|most| [most - spent, (1.0 + share_of_answers) * took]);
+        // What was wanted of quantities took its part of it, and a finer mesh takes it again.
+        let took = answering.seconds(began.elapsed().as_secs_f64(), certified, options, goal);
+        let seconds = goal.max_seconds.map(|most| [most - spent, took]);
         let rounds = Rounds::new(goal, &admission, &forecast, mesh, shortest, seconds);
         let finer = match (goal.max_seconds, fault, terms) {
             (_, Some(fault), _) if shortest > LONGEST => Next::Nothing(fault),

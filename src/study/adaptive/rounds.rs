@@ -242,9 +242,12 @@ impl<'a> Rounds<'a> {
 }
 
 /// As many as three edges for each triangle, shared by two, have of its degree.
+pub fn unknowns_of(degrees: impl Iterator<Item = usize>) -> f64 {
+    degrees.map(|degree| 3 * (degree + 1)).sum::<usize>() as f64
+}
+
 fn unknowns(stage: &Stage) -> f64 {
-    let of = |t: usize| 3 * (stage.elements.degree(t) + 1);
-    (0..stage.problem.mesh.triangles.len()).map(of).sum::<usize>() as f64
+    unknowns_of((0..stage.problem.mesh.triangles.len()).map(|t| stage.elements.degree(t)))
 }
 
 /// The area of triangles that are `shortest` across, relative to the farthest corner.

@@ -18,7 +18,7 @@ mod summary;
 use std::time::Instant;
 
 use super::adaptive::Adapted;
-use super::adaptive::rounds::TIME;
+use super::adaptive::rounds::{TIME, unknowns_of};
 use super::certified::{Certified, StudyError};
 use crate::bounds::{Bracket, UpperBound};
 use crate::compare::BoundDistance;
@@ -157,7 +157,8 @@ const FOR_REFINEMENT: f64 = 0.5;
 const ROUNDS: usize = 4;
 
 /// Where there is a `tolerance` of the relative error, solves and refines in turn until the bracket for the bound that was found meets it:
-/// `adapt` refines with the bound held, for no more than the seconds that it is given. Where `seconds` would pass before a bound is found on a finer mesh, that of the coarser one is kept.
+/// `adapt` refines with the bound held, for no more than the seconds that it is given. Where `seconds` would pass before a bound is found on a
+/// finer mesh, that of the coarser one is kept.
 ///
 /// # Errors
 /// As [`solve_coulomb`].
@@ -204,10 +205,10 @@ pub fn solve_coulomb_to(
     }
 }
 
-/// As many as three edges for each triangle, shared by two, have of its degree.
+/// The unknowns of the stresses.
 fn unknowns(certified: &Certified) -> f64 {
     let stress = &certified.dual.stress;
-    (0..stress.len()).map(|t| 1.5 * (stress.degree(t) + 1) as f64).sum()
+    unknowns_of((0..stress.len()).map(|t| stress.degree(t)))
 }
 
 /// The upper bound of sides that stick; none where its displacement slides by more than rounding. The work of friction on what rounding
