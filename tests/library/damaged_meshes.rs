@@ -54,7 +54,24 @@ fn files_that_do_not_follow_their_format() {
         (
             "short.su2",
             "NDIME= 2\nNELEM= 1\n5 0 1 2\n5 0 2 3\nNPOIN= 4\n0 0\n1 0\n1 1\n0 1\n",
-            "line 5: NELEM= announces 1 rows, and 2 stand",
+            "line 4: '5 0 2 3' stands where a section",
+        ),
+        ("long.su2", "NDIME= 2\nNELEM= 2\n5 0 1 2\nNPOIN= 3\n0 0\n1 0\n1 1\n", "NELEM= announces 2 rows, and fewer"),
+        ("word.su2", "NDIME= 2\nNELEM= 1\n5 0 1 2\nNPOIN= 3\n0 0\n1 q\n1 1\n", "line 6: 'q' stands where a number"),
+        ("few.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "3 points and 2 cells, and 4 rows"),
+        ("few.avs", "3 2 0 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n1 1 tri 1 2 3\n", "3 points and 2 cells and has 3 and 1"),
+        (
+            "few.xml",
+            "<dolfin><mesh celltype=\"triangle\" dim=\"2\"><vertices size=\"3\"><vertex index=\"0\" x=\"0\" y=\"0\"/></vertices></mesh></dolfin>",
+            "3 vertices and has 1",
+        ),
+        ("word.msh", "3 1 0\n0 0 1\n1 x 1\n0 1 1\n1 2 3 0\n", "line 3: 'x' stands where a number"),
+        ("word.vol", "mesh3d\npoints\n2\n0 0 0\n1 x 0\n", "line 5: 'x' stands where a number"),
+        ("word.frd", "    1C\n    2C    1    1\n -1         1 0.00000E+00 0.0x000E+00 0.00000E+00\n -3\n", "line 3: "),
+        (
+            "twice.bdf",
+            "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,0.,1.,0.\nCTRIA3,1,1,1,2,3\nCTRIA3,1,1,1,3,2\n",
+            "line 5: cell 1 is given twice",
         ),
         (
             "one.post.msh",
@@ -66,7 +83,7 @@ fn files_that_do_not_follow_their_format() {
             "    1C\n    2C    1    1\n -1         1 0.00000E+00 0.00000E+00 0.00000E+00\n 9999\n",
             "not with -3",
         ),
-        ("i.e", "CDF\x01", "does not follow its format"),
+        ("i.e", "CDF\x01", "i.e"),
         ("j.post.msh", "MESH dimension 2 ElemType Blob Nnode 3\n", "kind of cell"),
     ] {
         let error =

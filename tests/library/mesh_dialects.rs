@@ -1,6 +1,7 @@
 //! The plate of `mesh_formats` in what newer versions of the programs write, with fields that are optional, and with what is not read.
 
-use crate::mesh_formats::{Folder, POINTS, Variable, check, netcdf, rows, scene, unv, unv_groups, vtu};
+use crate::mesh_formats::{Folder, LIMIT, POINTS, Variable, check, netcdf, rows, scene, unv, unv_groups, vtu};
+use hypercircle::mesh::inventory::Inventory;
 use hypercircle::problem::Problem;
 
 #[track_caller]
@@ -228,6 +229,22 @@ fn grids_of_xdmf() {
         ["7", "8"],
     );
     check(&folder.write("sides.xdmf", whole(&[mesh.as_str(), &of_sides].concat())), &["plate"], ["7", "8"]);
+    // Kinds of cells in one topology: quadrilaterals, triangles and sides, here of first order.
+    let mixed = "5 0 1 4 3 4 1 2 5 4 1 5 4 2 2 3 0 2 2 5 2";
+    check(
+        &folder
+            .write("mixed.xdmf", whole(&grid(topology("Mixed", "21", mixed) + &geometry + &tags("1 2 2 7 8", "5 1")))),
+        &["1", "2"],
+        ["7", "8"],
+    );
+    let eight = "<Geometry GeometryType=\"XY\">".to_owned()
+        + &item("Float", "8 2", "0 0 2 0 2 1 0 1 1 0 2 .5 1 1 0 .5")
+        + "</Geometry>";
+    let second = grid(topology("Mixed", "13", "37 0 1 2 3 4 5 6 7 34 3 0 7") + &eight + &tags("1 7", "2 1"));
+    let found = Inventory::read(&folder.write("second.xdmf", whole(&second)), LIMIT).expect("an inventory");
+    assert_eq!((found.bodies.len(), found.boundaries.len()), (1, 1));
+    let polygon = grid(topology("Mixed", "7", "3 4 0 1 2 3 1") + &eight);
+    refused(&folder, "polygon.xdmf", whole(&polygon), &["cell of kind 3"]);
     let moved = grid(topology("Triangle", "4 3", cells) + &geometry.replace("2 1\n", "3 1\n"));
     refused(&folder, "two.xdmf", whole(&(mesh.clone() + &moved)), &["points of its own"]);
     refused(

@@ -14,6 +14,14 @@ pub(super) fn text(bytes: &[u8]) -> Result<&[u8], &'static str> {
     }
 }
 
+/// The bytes of a text with the ends of lines of old Macs, with those of others.
+pub(super) fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
+    if bytes.contains(&b'\n') || !bytes.contains(&b'\r') {
+        return Cow::Borrowed(bytes);
+    }
+    Cow::Owned(bytes.iter().map(|b| if *b == b'\r' { b'\n' } else { *b }).collect())
+}
+
 /// The text of bytes; what is no UTF-8 is Latin-1, so that names that differ still do.
 pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {

@@ -40,6 +40,10 @@ pub fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> Result<
     let target = folder.path().join("result.json");
     let file = std::path::absolute(file).map_err(no_folder)?;
     let chosen = std::env::var_os("HYPERCIRCLE_PYTHON");
+    if let Some(name) = chosen.as_deref().filter(|name| python::find(Path::new(name)).is_none()) {
+        let what = format!("HYPERCIRCLE_PYTHON is {}, and there is no such interpreter", Path::new(name).display());
+        return Err(failure(what, "set it to an interpreter that has meshio, or unset it".into()));
+    }
     let names = chosen.iter().map(Path::new).chain(["python3", "/usr/bin/python3"].map(Path::new));
     for interpreter in names.filter_map(python::find) {
         let mut command = python::command(&interpreter, script, &place, &[], None).map_err(no_folder)?;

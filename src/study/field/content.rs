@@ -161,7 +161,8 @@ impl ForeignField {
             rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
         let single = data.single || content.single;
         let numbers = values.iter().flatten().flatten().copied();
-        let precision = digits::precision(numbers, single).max(digits::of_format(file));
+        let of_format = if single { 0.0 } else { digits::of_format(file) };
+        let precision = digits::precision(numbers, single).max(of_format);
         let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
         Ok(ForeignField {
             files: vec![(name, [0; 2])],

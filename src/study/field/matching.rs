@@ -275,7 +275,7 @@ fn jump(field: &ForeignField, scene: &Scene, point: [f64; 2]) -> FieldError {
     let what = format!("the displacement jumps inside a body or across a bond, at {}", at(scene, point));
     field.fault(
         what,
-        "only a continuous field has an energy: write it in a continuous space; one of a method that ties unlike meshes in the mean          is made continuous by projecting it onto equal vertices of both sides",
+        "only a continuous field has an energy: write it in a continuous space; one of a method that ties unlike meshes in the mean is made continuous by projecting it onto equal vertices of both sides",
     )
 }
 

@@ -9,7 +9,8 @@ OWN_FIELDS = {".frd": read_frd, ".med": read_med, ".rmed": read_med, ".e": read_
 def own_fields(source):
     """Points, blocks of cells and fields of a file of CalculiX, MED or Exodus, or nothing of another."""
     reader = next((reader for suffix, reader in OWN_FIELDS.items() if source.lower().endswith(suffix)), None)
-    if reader is None and source.lower().endswith(".dat") and any("(vx,vy,vz)" in line for line in lines_of(source)):
+    # Tecplot writes files with this ending too.
+    if reader is None and source.lower().endswith(".dat") and not any(re.match(r"\s*(TITLE|VARIABLES|ZONE)\b", line) for line in lines_of(source)):
         reader = read_dat
     if reader is None:
         return None
@@ -25,7 +26,8 @@ def own_fields(source):
     fields = {}
     for name, rows in found.fields.items():
         displacement = "depl" in name.lower() or name.lower().startswith("disp")
-        fields["displacement" if displacement and "displacement" not in fields else name] = numpy.array(rows, dtype=float)
+        kind = numpy.float32 if found.single else float
+        fields["displacement" if displacement and "displacement" not in fields else name] = numpy.array(rows, dtype=kind)
     # meshio's blocks take no kind that it does not know.
     cells = [types.SimpleNamespace(type=kind, data=numpy.array(nodes)) for (kind, _), nodes in blocks.items()]
     return numpy.array(found.points, dtype=float), cells, fields, False

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::super::encoding::{SAVE_AS_UTF8, decoded, text};
+use super::super::encoding::{SAVE_AS_UTF8, decoded, text, with_line_feeds};
 use super::DAMAGED;
 use super::keyword::{Keyword, Line, Place, shown};
 use crate::mesh::MeshError;
@@ -43,7 +43,8 @@ impl Deck<'_> {
         }
         let start = Place::start(file, self.root);
         let bytes = text(bytes).map_err(|found| start.fault(format!("the file is {found}"), SAVE_AS_UTF8))?;
-        let text = decoded(bytes);
+        let bytes = with_line_feeds(bytes);
+        let text = decoded(&bytes);
         let mut lines = (1..).zip(text.lines().map(str::trim)).peekable();
         while let Some((number, line)) = lines.next() {
             if line.is_empty() || line.starts_with("**") {

@@ -152,7 +152,11 @@ impl Reader {
         let shape = match family(name) {
             Family::Plane(kind, count) => Some((kind, count, false)),
             Family::Shell(kind, count) => Some((kind, count, true)),
-            Family::Rigid(kind, count) => self.all_rigid.then_some((kind, count, true)),
+            Family::Rigid(kind, count) if self.all_rigid => Some((kind, count, true)),
+            Family::Rigid(..) => {
+                self.remarks.rigid_cells(name);
+                None
+            }
             Family::Idle => None,
             Family::Space => return Err(in_space(keyword, name)),
             Family::Unknown => {

@@ -14,6 +14,8 @@ pub(super) struct Remarks {
     flat: Vec<String>,
     /// Surfaces without elements.
     rigid: Vec<String>,
+    /// Types of rigid elements beside elastic ones.
+    rigid_cells: Vec<String>,
     /// Names that more than one part has.
     common: Vec<String>,
     /// Names of a node set and of another surface of nodes.
@@ -35,6 +37,10 @@ impl Remarks {
         self.rigid.push(surface.to_owned());
     }
 
+    pub fn rigid_cells(&mut self, kind: &str) {
+        self.rigid_cells.push(kind.to_owned());
+    }
+
     pub fn common(&mut self, name: &str) {
         self.common.push(name.to_owned());
     }
@@ -44,12 +50,16 @@ impl Remarks {
     }
 
     pub fn notes(self) -> Vec<Note> {
-        let Remarks { strays, flat, rigid, common, doubled } = self;
+        let Remarks { strays, flat, rigid, rigid_cells, common, doubled } = self;
         let strays = strays.into_iter().map(|(set, number)| format!("{set} ({number})")).collect();
         let kinds = [
             ("Numbers that are not in the deck are left out of these sets, the first in brackets: ", strays),
             ("These surfaces are faces of cells (SPOS, SNEG), which lie in the plane and have no edge: ", flat),
             ("These surfaces have no elements (analytical rigid ones and cuts) and are left out: ", rigid),
+            (
+                "Rigid elements of these types are left out, say obstacles and supports in the scene instead: ",
+                rigid_cells,
+            ),
             ("Sets of several parts have these names, which stand for all of them together: ", common),
             ("A node set and a surface of other nodes have these names, which stand for the node set: ", doubled),
         ];

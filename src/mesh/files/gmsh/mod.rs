@@ -29,6 +29,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshErro
     }
     let bytes = encoding::text(bytes)
         .map_err(|found| MeshError::file(file, format!("the file is {found}"), encoding::SAVE_AS_UTF8))?;
+    let bytes = &*encoding::with_line_feeds(bytes);
     if abaqus::is_deck(bytes) {
         return abaqus::parse(bytes, file);
     }

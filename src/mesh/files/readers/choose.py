@@ -1,7 +1,7 @@
 """Which reader a file asks for."""
 
 READERS = {".unv": read_unv, ".med": read_med, ".rmed": read_med, ".mmed": read_med, ".e": read_exodus, ".exo": read_exodus, ".ex2": read_exodus, ".exii": read_exodus,
-           ".frd": read_frd, ".vol": read_ngsolve, ".vol.gz": read_ngsolve, ".json": read_skfem}
+           ".frd": read_frd, ".vol": read_ngsolve, ".vol.gz": read_ngsolve, ".json": read_skfem, ".su2": read_su2}
 
 
 def own_reader(source):
@@ -36,13 +36,14 @@ def read_own(source, reader):
     """What the reader finds; what it cannot read ends with code 46 and a message."""
     try:
         found = reader(source)
+        Lines.last = None
         found.mesh()
         return found
     except Unreadable as error:
         reason = str(error)
     except (ValueError, KeyError, IndexError, TypeError, AttributeError, struct.error, EOFError, OSError) as error:
-        reason = f"it does not follow its format ({type(error).__name__}: {error})"
-    refuse(reason)
+        reason = plain(error)
+    refuse(located(reason, source))
 
 
 def refuse(reason):

@@ -3,6 +3,7 @@
 import gzip
 import math
 import os
+import re
 import sys
 import tempfile
 
@@ -18,6 +19,67 @@ class Unreadable(Exception):
     """A file that does not follow its format."""
 
 
+class Lines(list):
+    """Lines of a file, or their words. What was handed out last is where an error of its reader is."""
+
+    last = None
+
+    def __init__(self, lines, path, numbers=None):
+        super().__init__(lines)
+        self.path = path
+        self.numbers = range(1, len(self) + 1) if numbers is None else numbers
+
+    def __getitem__(self, at):
+        if isinstance(at, slice):
+            return Lines(super().__getitem__(at), self.path, self.numbers[at])
+        line = super().__getitem__(at)
+        Lines.last = self.path, self.numbers[at]
+        return line
+
+    def __iter__(self):
+        for number, line in zip(self.numbers, super().__iter__()):
+            Lines.last = self.path, number
+            yield line
+        Lines.last = None
+
+    def parts(self, of_line):
+        """What a function makes of each line, with the number that it has in the file."""
+        made = [(number, part) for number, line in zip(self.numbers, super().__iter__()) for part in of_line(line)]
+        return Lines([part for _, part in made], self.path, [number for number, _ in made])
+
+    def without(self, comment):
+        """The lines without comments and surrounding blanks, and without empty ones."""
+        return self.parts(lambda line: [text for text in [line.split(comment)[0].strip()] if text])
+
+
+def located(reason, source):
+    """The reason with the line at which the reader stopped, where it has none yet."""
+    if Lines.last is None or re.search(r"\bline \d", reason):
+        return reason
+    path, number = Lines.last
+    return f"line {number}" + ("" if path == source else f" of {os.path.basename(path)}") + f": {reason}"
+
+
+# What Python says of a text that is no number, and what is meant.
+NO_NUMBER = [(re.compile("invalid literal for int.* base 10: (.*)"), "a whole number"), (re.compile("could not convert string to float: (.*)"), "a number")]
+
+
+def plain(error):
+    """What went wrong in a reader, in words for somebody who looks at the file."""
+    text = " ".join(str(error).split())
+    for pattern, wanted in NO_NUMBER:
+        match = pattern.search(text)
+        if match:
+            return f"{match[1][:60]} stands where {wanted} belongs"
+    if isinstance(error, (IndexError, StopIteration, EOFError, AssertionError)) or "unpack" in text:
+        return "something that belongs here is missing, or the file is cut off"
+    if isinstance(error, KeyError):
+        return f"there is {text}, which this format does not have here"
+    if isinstance(error, UnicodeDecodeError):
+        return "it has bytes that are no text"
+    return f"it does not follow its format ({text or type(error).__name__})"
+
+
 class Found:
     """Points by tag, cells with their groups, and sets of nodes."""
 
@@ -30,6 +92,7 @@ class Found:
         self.node_sets = {}
         self.numbers = {}  # Name by dimension and number.
         self.fields = {}  # Rows by point, by name.
+        self.single = False  # True if these are in single precision.
         self.notes = []
 
     def point(self, tag, coordinates):
@@ -116,7 +179,7 @@ def content_of(source):
 
 def lines_of(source):
     """The lines of a text file, which may be compressed."""
-    return content_of(source).decode("latin-1").splitlines()
+    return Lines(content_of(source).decode("latin-1").splitlines(), source)
 
 
 def package(name):
@@ -130,4 +193,4 @@ def package(name):
 
 def real(text):
     """A number, with Fortran's exponent too."""
-    return float(text.upper().replace("D", "E"))
+    return float(text.replace("D", "E").replace("d", "e"))

@@ -25,7 +25,8 @@ class Frd:
     def __init__(self, data):
         self.data, self.at = data, 0
         self.nodes, self.cells, self.values = {}, [], {}
-        self.components = 0
+        # How numbers are written: 0 and 1 are text.
+        self.form = 1
 
     def line(self):
         end = self.data.find(b"\n", self.at)
@@ -44,15 +45,15 @@ class Frd:
         """The first characters of the next line."""
         return self.data[self.at:self.at + 6].decode("latin-1")
 
-    def rows(self, into, count, form, width):
+    def rows(self, into, count, width):
         """A block of numbers by node, as text or in binary."""
-        if form >= 2:
+        if self.form >= 2:
             for _ in range(count):
-                tag, *row = self.take("<i" + ("d" if form == 3 else "f") * width)
+                tag, *row = self.take("<i" + ("d" if self.form == 3 else "f") * width)
                 self.once(into, tag)
                 into[tag] = row
             return
-        end = 13 if form == 1 else 8
+        end = 13 if self.form == 1 else 8
         while self.peek().startswith(" -1"):
             line = self.line()
             self.once(into, int(line[3:end]))
@@ -64,13 +65,13 @@ class Frd:
         if tag in into:
             raise Unreadable(f"node {tag} is given twice in one block")
 
-    def ends(self, what, present, form):
+    def ends(self, what, present):
         """Refuses a block of text that is cut off, or holds other lines."""
-        if form < 2 and not self.peek().startswith(" -3"):
+        if self.form < 2 and not self.peek().startswith(" -3"):
             raise Unreadable(f"its {what} end with '{self.line()[:40]}' behind {present} rows, and not with -3")
 
-    def elements(self, count, form):
-        if form >= 2:
+    def elements(self, count):
+        if self.form >= 2:
             for _ in range(count):
                 tag, kind, _, _ = self.take("<4i")
                 self.cells.append((tag, kind, list(self.take(f"<{self.nodes_of(tag, kind)}i"))))
@@ -88,30 +89,30 @@ class Frd:
         return FRD[kind][1]
 
     def read(self):
-        count = form = 0
+        count = 0
         while self.at < len(self.data):
             line = self.line()
             key = line[:6].strip()
             words = line.split()
             if key in ("2C", "3C"):
                 # The last word of a block says how it is written.
-                count, form = int(words[1]), int(words[-1]) if len(words) > 2 else 1
+                count, self.form = int(words[1]), int(words[-1]) if len(words) > 2 else 1
                 if key == "2C":
-                    self.rows(self.nodes, count, form, 3)
-                    self.ends("nodes", len(self.nodes), form)
+                    self.rows(self.nodes, count, 3)
+                    self.ends("nodes", len(self.nodes))
                 else:
-                    self.elements(count, form)
-                    self.ends("elements", len(self.cells), form)
+                    self.elements(count)
+                    self.ends("elements", len(self.cells))
             elif key.startswith("100C"):
-                count, form = int(line[24:36]), int(words[-1])
+                count, self.form = int(line[24:36]), int(words[-1])
             elif line.startswith(" -4"):
                 name, width = line[5:13].strip(), 0
                 while self.peek().startswith(" -5"):
                     component = self.line()
                     width += 0 if component.rstrip().endswith("ALL") else 1
                 into = {}
-                self.rows(into, count, form, width)
-                self.ends(f"values of {name}", len(into), form)
+                self.rows(into, count, width)
+                self.ends(f"values of {name}", len(into))
                 if name == "DISP":
                     self.values = into
         return self
@@ -165,7 +166,13 @@ def frd_is_turned(frd):
 
 
 def read_frd(source):
-    frd = Frd(content_of(source)).read()
+    frd = Frd(content_of(source))
+    try:
+        frd.read()
+    except (Unreadable, ValueError, IndexError):
+        if frd.form < 2:
+            Lines.last = source, frd.data.count(b"\n", 0, frd.at)
+        raise
     if not frd.nodes:
         raise Unreadable("it has no block of nodes (2C), which CalculiX writes where the deck asks for `*NODE FILE` and U")
     found = Found("CalculiX")
@@ -183,4 +190,5 @@ def read_frd(source):
     nothing = [float("nan")] * 3
     if frd.values:
         found.fields["displacement"] = [frd.values.get(tag, nothing) for tag in found.index]
+        found.single = frd.form == 2
     return found

@@ -49,13 +49,14 @@ def read_with_meshio(source, target):
     # Of pixels meshio knows the name, and lacks dimension and number of nodes.
     for module, table, value in (("_mesh", "topological_dimension", 2), ("_common", "num_nodes_per_cell", 4)):
         getattr(getattr(meshio, module, None), table, {}).setdefault("pixel", value)
-    grids = xdmf_grids(source) if source.lower().endswith((".xdmf", ".xmf")) else None
-    if grids is not None:
-        return grids
-    if source.lower().endswith(".su2"):
-        count_rows_of_su2(source)
     said = io.StringIO()
     try:
+        if source.lower().endswith((".xdmf", ".xmf")):
+            grids = xdmf_grids(source)
+            if grids is not None:
+                return grids
+            prepare_meshio_for_xdmf(source)
+        count_rows(source)
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             mesh = meshio.read(readable(source, target))
     except (ModuleNotFoundError, Unreadable):
@@ -75,22 +76,29 @@ def read_with_meshio(source, target):
     return mesh
 
 
-def count_rows_of_su2(source):
-    """Refuses a file of SU2 in which more or fewer rows stand than a section announces: meshio reads what is announced."""
-    section, announced, rows = None, 0, 0
-    for number, line in enumerate([*lines_of(source), "END="], 1):
-        text = line.split("%")[0].strip()
-        key, equals, value = text.partition("=")
-        if not equals:
-            rows += bool(text)
-            continue
-        if section and rows != announced:
-            raise Unreadable(f"line {number}: {section}= announces {announced} rows, and {rows} stand below it: correct the number, or write the file again")
-        key, value = key.strip(), value.split()
-        if key in ("NELEM", "NPOIN", "MARKER_ELEMS") and value and value[0].isdigit():
-            section, announced, rows = key, int(value[0]), 0
-        else:
-            section = None
+def count_rows(source):
+    """Refuses a file with other rows than it announces, of formats in which meshio does not look at that."""
+    suffix = os.path.splitext(source)[1].lower()
+    if suffix == ".xml":
+        text = content_of(source).decode("latin-1")
+        for what, rows in (("vertices", "vertex"), ("cells", "(?:triangle|interval|quadrilateral|tetrahedron|hexahedron)")):
+            announced = re.search(rf'<{what}\s+size="(\d+)"', text)
+            present = len(re.findall(rf"<{rows}\s", text))
+            if announced and int(announced[1]) != present:
+                raise Unreadable(f"it announces {announced[1]} {what} and has {present}")
+    elif suffix in (".off", ".avs"):
+        lines = lines_of(source).without("#")
+        first, *others = [line.split() for line in lines[:2]]
+        # OFF may stand in a line of its own.
+        alone = suffix == ".off" and len(first) == 1
+        counts = [int(word) for word in (others[0] if alone else [word for word in first if word.upper() != "OFF"])[:2]]
+        rows = lines[2 if alone else 1:]
+        # A cell of AVS has the name of its shape as the third word; rows of values stand behind the cells.
+        cells = [len(row.split()) > 2 and row.split()[2].isalpha() for row in rows]
+        present = [len(rows) - counts[1], counts[1]] if suffix == ".off" else [cells.index(True) if True in cells else len(cells), sum(cells)]
+        if present != counts:
+            raise Unreadable(f"it announces {counts[0]} points and {counts[1]} cells and has {present[0]} and {present[1]}" if suffix == ".avs"
+                             else f"it announces {counts[0]} points and {counts[1]} cells, and {len(rows)} rows stand below that")
 
 
 def readable(source, target):
@@ -99,6 +107,10 @@ def readable(source, target):
     with open(source, "rb") as file:
         head = file.read(500)
         rest = file.read() if b"<VTKFile" in head else b""
+    if re.match(rb"OFF[ \t]+\d", head):
+        with open(target + ".off", "wb") as file, open(source, "rb") as text:
+            file.write(b"OFF\n" + text.read()[3:].lstrip(b" \t"))
+        return target + ".off"
     older = re.sub(rb'(<VTKFile[^>]*\bversion=)"2\.\d+"', rb'\1"1.0"', head)
     if b"vtkLZ4DataCompressor" in head and not re.search(rb'format="(binary|appended)"', head + rest):
         older = re.sub(rb'\scompressor="vtkLZ4DataCompressor"', b"", older)
@@ -116,16 +128,17 @@ def readable(source, target):
 
 def reason_of(source, error):
     """What a file holds that meshio does not read, and what to do; nothing where meshio's own message is to be shown."""
-    low = source.lower()
-    if low.endswith(".su2") and isinstance(error, KeyError):
-        return f"it has elements of type {error}, and of SU2 only cells of first order are read (3, 5, 9): export the mesh in another format"
-    if not low.endswith(".vtk"):
-        return None
+    if isinstance(error, SystemExit) or str(error) and type(error).__module__.startswith("meshio"):
+        lost = None
+    else:
+        lost = f"meshio cannot read it: {plain(error)}"
+    if not source.lower().endswith(".vtk"):
+        return lost
     with open(source, "rb") as file:
         head = file.read(2000).decode("latin-1")
     version, form, kind = (re.search(pattern, head, re.MULTILINE) for pattern in (r"Version\s+([0-9.]+)", "^(ASCII|BINARY)", r"^DATASET\s+(\w+)"))
     if kind is None:
-        return None
+        return lost
     told = ", ".join(word[1] for word in (version, form, kind) if word)
     lacking = f" because of {error}" if isinstance(error, KeyError) else ""
     return f"meshio cannot read it, a VTK file ({told}){lacking}: save it as an unstructured grid in VTU, as text (ASCII) or compressed with zlib"

@@ -102,13 +102,16 @@ def nastran_cell(found, place, name, fields):
         # Without its centre it has eight nodes, without a node in the middle of a side only its corners.
         nodes = nodes[:8 if count == 9 and 0 not in nodes[:8] else corners]
     groups = [found.number(1 if shape == "line" else 2, int(fields[1] or fields[0]), {})] if shape in ("line", *SIDES) else []
-    found.cell(shape, nodes, groups)
+    found.cell(shape, nodes, groups, int(fields[0]))
 
 
 def read_nastran(source):
     """Bulk data of Nastran: points and elements, by their property."""
     found = Found("Nastran")
     points, frames, usual, others, turned = [], {0: None}, "", {}, []
+    words = [line.split(None, 1)[0].upper() for line in lines_of(source) if line.strip()]
+    if "BEGIN" in words and "ENDDATA" not in words:
+        found.notes.append("The deck has BEGIN BULK and no ENDDATA: if it was cut off, what is missing is not told.")
     for place, name, fields in nastran_cards(source):
         try:
             if name == "GRID":
@@ -125,6 +128,8 @@ def read_nastran(source):
                 others.setdefault(name, place)
         except ValueError as error:
             raise Unreadable(f"{place}: a field of {name} is not the number that belongs there ({error})") from None
+        except Unreadable as error:
+            raise Unreadable(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
     points = [(tag, nastran_basic(point, int(frame or usual or 0), frames)) for tag, frame, point in points]
     across = turned and all(turned) and all(y == 0.0 for _, (_, y, _) in points) and any(z != 0.0 for _, (_, _, z) in points)
     for tag, (x, y, z) in points:

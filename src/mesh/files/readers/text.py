@@ -7,6 +7,7 @@ import re
 GETFEM = {"PK(2,1)": ("triangle", [0, 1, 2]), "PK(2,2)": ("triangle", [0, 2, 5, 1, 4, 3]),
           "QK(2,1)": ("quadrilateral", [0, 1, 3, 2]), "QK(2,2)": ("quadrilateral", [0, 2, 8, 6, 1, 5, 7, 3, 4]),
           "LINEAR_PRODUCT(PK(1,1),PK(1,1))": ("quadrilateral", [0, 1, 3, 2]), "LINEAR_QK(2)": ("quadrilateral", [0, 1, 3, 2]),
+          "PRODUCT(PK(1,1),PK(1,1))": ("quadrilateral", [0, 1, 3, 2]), "PRODUCT(PK(1,2),PK(1,2))": ("quadrilateral", [0, 2, 8, 6, 1, 5, 7, 3, 4]),
           "Q2_INCOMPLETE(2)": ("quadrilateral", [0, 2, 7, 5, 1, 4, 6, 3]), "PK(1,1)": ("line", [0, 1]), "PK(1,2)": ("line", [0, 2, 1])}
 # Side of the cell by number of GetFEM's face.
 GETFEM_FACES = {"triangle": [1, 2, 0], "quadrilateral": [1, 3, 2, 0]}
@@ -15,7 +16,7 @@ GETFEM_FACES = {"triangle": [1, 2, 0], "quadrilateral": [1, 3, 2, 0]}
 def read_freefem(source):
     """nv nt ne, then vertices, triangles and edges, each with a label."""
     found = Found("FreeFEM")
-    words = [word for line in lines_of(source) for word in line.split()]
+    words = lines_of(source).parts(str.split)
     counts = [int(word) for word in words[:3]]
     at = 3
     if min(counts) < 0 or len(words) < 3 + 3 * counts[0] + 4 * counts[1] + 3 * counts[2]:
@@ -43,8 +44,7 @@ def read_medit(source):
     """Medit's text, of second order too; keywords without cells, such as normals and ridges, are passed over. Gmsh writes eight and nine nodes
     under `Quadrilaterals`, as many as there are numbers."""
     found = Found("Medit")
-    text = re.sub(r"#.*", "", "\n".join(lines_of(source)))
-    words = text.split()
+    words = lines_of(source).without("#").parts(str.split)
     starts = [i for i, word in enumerate(words) if word[0].isalpha()]
     dimension = 3
     for start, end in zip(starts, starts[1:] + [len(words)]):
@@ -152,8 +152,7 @@ NGSOLVE_EDGES = ["edgesegments", "edgesegmentsgi", "edgesegmentsgi2", "edgesegme
 
 def read_ngsolve(source):
     found = Found("NGSolve")
-    lines = [line.strip() for line in lines_of(source)]
-    lines = [line for line in lines if line and not line.startswith("#")]
+    lines = lines_of(source).parts(lambda line: [text for text in [line.strip()] if text and not text.startswith("#")])
     tables = {}
     at = 0
     while at < len(lines):
@@ -163,7 +162,7 @@ def read_ngsolve(source):
             raise Unreadable(f"it has a section '{lines[at - 1]}', which this program does not know: export the mesh in another format, such as Gmsh's")
         if key in (*NGSOLVE_SURFACES, *NGSOLVE_EDGES, "volumeelements", "points", "materials", "bcnames", "pointelements", "edgedescriptors"):
             count = int(lines[at])
-            tables[key] = [line.split() for line in lines[at + 1:at + 1 + count]]
+            tables[key] = lines[at + 1:at + 1 + count].parts(lambda line: [line.split()])
             if len(tables[key]) != count:
                 raise Unreadable(f"its {key} are {len(tables[key])} instead of the {count} it announces")
             at += 1 + count
@@ -228,6 +227,55 @@ def read_skfem(source):
                 raise Unreadable(f"boundary '{name}' has side {side} of {len(sides)}")
             found.cell("line", sides[side], [name])
     return found
+
+
+SU2 = {3: ("line", 2), 5: ("triangle", 3), 9: ("quadrilateral", 4), 10: ("tetrahedron", 4), 12: ("hexahedron", 8), 13: ("prism", 6), 14: ("pyramid", 5)}
+
+
+def read_su2(source):
+    """Cells, points and markers, each with the number of its rows; points and cells count from zero."""
+    found = Found("SU2")
+    lines = lines_of(source).without("%")
+    dimension, marker, at = 2, None, 0
+    while at < len(lines):
+        key, equals, value = lines[at].partition("=")
+        key, value = key.strip(), value.split()
+        if not equals:
+            raise Unreadable(f"'{lines[at][:60]}' stands where a section such as NELEM= is expected: the section before it announces fewer rows")
+        at += 1
+        if key == "NZONE" and int(value[0]) > 1:
+            raise Unreadable(f"it has {value[0]} zones: save each into a file of its own")
+        elif key == "NDIME":
+            dimension = int(value[0])
+        elif key == "MARKER_TAG":
+            marker = value[0]
+        elif key in ("NELEM", "NPOIN", "MARKER_ELEMS"):
+            count = int(value[0])
+            rows = lines[at:at + count]
+            at += count
+            if len(rows) < count or any("=" in row for row in rows):
+                raise Unreadable(f"{key}= announces {count} rows, and fewer stand below it")
+            for row in rows:
+                su2_row(found, key, row.split(), dimension, marker)
+    markers = list(dict.fromkeys(name for _, _, groups in found.cells for name in groups))
+    found.numbers.update({(1, int(name) if name.isdigit() else number): name for number, name in enumerate(markers, 1)})
+    return found
+
+
+def su2_row(found, key, words, dimension, marker):
+    if key == "NPOIN":
+        found.point(len(found.points), [real(x) for x in words[:dimension]])
+        return
+    kind = int(words[0])
+    if kind not in SU2:
+        # A marker of points is none of cells.
+        if key == "NELEM":
+            raise Unreadable(f"an element is of type {kind}, and of SU2 only cells of first order are read (3, 5, 9): export the mesh in another format")
+        return
+    shape, count = SU2[kind]
+    if len(words) <= count:
+        raise Unreadable(f"a {shape} has {len(words) - 1} nodes instead of {count}")
+    found.cell(shape, [int(n) for n in words[1:count + 1]], [marker] if key == "MARKER_ELEMS" and marker else [])
 
 
 def read_elmer(source):

@@ -7,6 +7,10 @@ import xml.etree.ElementTree
 XDMF_CELLS = {"polyvertex": "vertex", "polyline": "line", "edge_3": "line3", "triangle": "triangle", "triangle_6": "triangle6", "tri_6": "triangle6",
               "quadrilateral": "quad", "quadrilateral_8": "quad8", "quad_8": "quad8", "quadrilateral_9": "quad9", "quad_9": "quad9",
               "tetrahedron": "tetra", "tetrahedron_10": "tetra10", "hexahedron": "hexahedron", "wedge": "wedge", "pyramid": "pyramid"}
+# Shape and number of nodes by XDMF's number of a cell in a mixed topology; zero where the number stands in the file.
+XDMF_MIXED = {1: ("vertex", 0), 2: ("line", 0), 4: ("triangle", 3), 5: ("quad", 4), 6: ("tetra", 4), 7: ("pyramid", 5), 8: ("wedge", 6), 9: ("hexahedron", 8),
+              34: ("line3", 3), 35: ("quad9", 9), 36: ("triangle6", 6), 37: ("quad8", 8), 38: ("tetra10", 10), 39: ("pyramid13", 13), 40: ("wedge15", 15),
+              48: ("hexahedron20", 20), 50: ("hexahedron27", 27)}
 
 
 def xdmf_grids(source):
@@ -56,12 +60,48 @@ def xdmf_cells(source, grid):
     kind = topology.get("TopologyType") or topology.get("Type") or ""
     cells = xdmf_array(source, topology)
     if kind.lower() == "mixed":
-        from meshio.xdmf.common import translate_mixed_cells
-
-        return [(block.type, nodes) for block in translate_mixed_cells(cells.ravel()) for nodes in block.data.tolist()]
+        return mixed_cells(cells.ravel().tolist())
     if kind.lower() not in XDMF_CELLS:
         raise Unreadable(f"grid '{grid.get('Name')}' has the topology '{kind}', which is not read beside other grids: save a file with one grid")
     return [(XDMF_CELLS[kind.lower()], nodes) for nodes in cells.tolist()]
+
+
+def mixed_cells(numbers):
+    """Shape and nodes of each cell of a mixed topology: a number of the shape, then the nodes, whose count stands first for points and lines."""
+    cells, at = [], 0
+    while at < len(numbers):
+        kind = numbers[at]
+        if kind not in XDMF_MIXED:
+            raise Unreadable(f"its mixed topology has a cell of kind {kind}, which is not read: save it in first or second order")
+        shape, count = XDMF_MIXED[kind]
+        at += 1
+        if count == 0:
+            count = numbers[at] if at < len(numbers) else 0
+            shape = shape if count == {"vertex": 1, "line": 2}[shape] else f"{shape} with {count} nodes"
+            at += 1
+        if at + count > len(numbers):
+            raise Unreadable(f"its mixed topology ends within a cell of {count} nodes")
+        cells.append((shape, numbers[at:at + count]))
+        at += count
+    return cells
+
+
+def prepare_meshio_for_xdmf(source):
+    """Lets meshio read mixed topologies in this way, where it stops at cells of second order, and text without the package of HDF."""
+    import importlib.util
+    import itertools
+
+    import meshio.xdmf.main
+    import numpy
+
+    def blocks(data):
+        runs = itertools.groupby(mixed_cells(numpy.asarray(data).ravel().tolist()), key=lambda cell: cell[0])
+        return [meshio.CellBlock(shape, numpy.array([nodes for _, nodes in cells])) for shape, cells in runs]
+
+    for module in (meshio.xdmf.main, meshio.xdmf.time_series):
+        module.translate_mixed_cells = blocks
+    if importlib.util.find_spec("h5py") is None and b"HDF" not in content_of(source):
+        sys.modules["h5py"] = types.ModuleType("h5py")
 
 
 def xdmf_array(source, part):

@@ -49,9 +49,12 @@ fn two_elements_in_a_line_and_missing_nodes_are_told_with_their_line() {
 }
 
 #[test]
-fn a_byte_order_mark_is_skipped_and_utf_16_is_named() {
+fn byte_order_marks_and_ends_of_lines_do_not_matter_and_utf_16_is_named() {
     let deck = plate("CPE4", "");
     assert_eq!(read(&format!("\u{feff}{deck}")), read(&deck));
+    for ends in ["\r", "\r\n"] {
+        assert_eq!(read(&deck.replace('\n', ends)), read(&deck));
+    }
     let wide: Vec<u8> = "\u{feff}*NODE\n1, 0, 0\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
     let message = parse(&wide, Path::new("deck.inp")).expect_err("UTF-16").to_string();
     assert!(message.contains("UTF-16") && message.contains("UTF-8"), "{message}");

@@ -85,6 +85,13 @@ fn rigid_surfaces_without_elements_are_left_out_with_a_note() {
 }
 
 #[test]
+fn rigid_cells_beside_elastic_ones_are_left_out_with_a_note() {
+    let (raw, notes) = read_with_notes(&plate("CPE4", "*ELEMENT, TYPE=R3D3, ELSET=Tool\n7, 1, 2, 4\n"));
+    assert_eq!(raw.triangles.len() + raw.shared.iter().map(|list| list.triangles.len()).sum::<usize>(), 4);
+    assert!(notes.len() == 1 && notes[0].contains("R3D3"), "{notes:?}");
+}
+
+#[test]
 fn a_surface_of_nodes_beside_a_set_of_its_name_does_not_add_to_it() {
     let (raw, notes) = read_with_notes(&plate("CPE4", "*NSET, NSET=N\n1, 2\n*SURFACE, TYPE=NODE, NAME=N\n3\n"));
     assert_eq!(points(&raw, "N"), [[0.0, 0.0], [1.0, 0.0]]);
