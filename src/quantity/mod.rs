@@ -16,6 +16,7 @@ pub use adjoint::pass::strained;
 pub use ends::clipped;
 pub use ends::outside;
 pub use functional::form::Form;
+pub use functional::local::Local;
 pub use functional::value::{displaced, value_of};
 pub use functional::{Functional, Kind, NotBounded};
 pub use interval::{Interval, Known};

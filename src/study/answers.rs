@@ -49,9 +49,6 @@ pub fn refuse_quantities(problem: &Problem) -> Result<(), String> {
     let problem = &problem.where_friction_acts();
     for quantity in &problem.scene.quantities {
         match Form::new(problem, quantity) {
-            Ok(form) if problem.has_friction() => {
-                slopes::refuse(problem, &form).map_err(|reason| format!("quantity '{}': {reason}", quantity.name))?;
-            }
             Ok(_)
             | Err(NotBounded::Shared { .. } | NotBounded::Carried { .. } | NotBounded::NoTip(NoTip::Coarse { .. })) => {
             }

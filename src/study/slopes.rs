@@ -14,7 +14,7 @@ use crate::dual::{Condensed, Options};
 use crate::element::Elements;
 use crate::element::polynomial::side;
 use crate::problem::{Condition, Problem, Scales};
-use crate::quantity::{Form, Functional, Interval, clipped, displaced, strained};
+use crate::quantity::{Form, Functional, Interval, Local, clipped, displaced, strained};
 use crate::scene::{Draft, Scene};
 
 /// Part of the energy that the first change of the data is to cause where nothing is known of the curvature.
@@ -35,7 +35,7 @@ const ROUNDED_MEAN: f64 = 1e-12;
 
 /// Reason why a quantity has no interval of this kind.
 const NO_SLOPE: &str = "with friction, elastic contact or polynomial tractions only mean displacements of free and loaded boundaries and of \
-                        bodies, mean stresses, and forces of contacts and of supports that meet no spring have an interval, and this is none of them";
+                        bodies, mean stresses, stresses at points, and forces of contacts and of supports that meet no spring have an interval, and this is none of them";
 
 /// The same of a body of revolution.
 const NO_SLOPE_REVOLVED: &str = "on bodies of revolution with friction or elastic contact only mean displacements of free and loaded boundaries \
@@ -53,17 +53,70 @@ const UNSOLVED: &str = "the problem with other data, from whose energy the inter
 /// # Errors
 /// A sentence on the quantities that have one.
 pub fn refuse(problem: &Problem, form: &Form) -> Result<(), &'static str> {
-    form.linear().and_then(|functional| Change::of(problem, functional)).map(|_| ()).ok_or_else(|| no_slope(problem))
+    let has_one = |functional: &Functional| {
+        Simplified::of(problem, functional).is_some_and(|simplified| Change::of(problem, &simplified.means).is_some())
+    };
+    let all = match form {
+        Form::Linear(functional) => has_one(functional),
+        Form::Invariant { components, .. } => components.iter().all(has_one),
+    };
+    if all { Ok(()) } else { Err(no_slope(problem)) }
 }
 
 /// The interval of a quantity of a problem that was solved.
 pub fn interval(certified: &Certified, form: &Form, options: &Options) -> Interval {
-    let found = form.linear().and_then(|functional| Some((functional, Change::of(&certified.problem, functional)?)));
-    let Some((functional, change)) = found else { return Interval::unknown(no_slope(&certified.problem)) };
+    match form {
+        Form::Linear(functional) => of_functional(certified, functional, options),
+        Form::Invariant { components, of } => {
+            of.interval(components.each_ref().map(|own| of_functional(certified, own, options)))
+        }
+    }
+}
+
+fn of_functional(certified: &Certified, functional: &Functional, options: &Options) -> Interval {
+    let problem = &certified.problem;
+    let found = Simplified::of(problem, functional)
+        .and_then(|simplified| Change::of(problem, &simplified.means).map(|change| (simplified, change)));
+    let Some((simplified, change)) = found else { return Interval::unknown(no_slope(problem)) };
     let stress = &certified.dual.stress;
     let degrees = (0..stress.len()).map(|t| stress.degree(t) as u8).collect();
     let options = Options { elements: Elements::Blocks(degrees), ..options.clone() };
-    Slope { certified, functional, options, change }.interval().unwrap_or_else(|| Interval::unknown(UNSOLVED))
+    Slope { certified, functional, simplified, options, change }
+        .interval()
+        .unwrap_or_else(|| Interval::unknown(UNSOLVED))
+}
+
+/// A quantity with its strains as means over triangles.
+struct Simplified {
+    means: Functional,
+    /// ∫ c(χ − mean):(χ − mean).
+    rest: f64,
+}
+
+impl Simplified {
+    /// None of a quantity that has other terms near a point.
+    fn of(problem: &Problem, functional: &Functional) -> Option<Self> {
+        let mut means = Functional { region: None, local: None, ..functional.clone() };
+        let mut rest = Sum::default();
+        match (&functional.region, functional.local.as_deref()) {
+            (Some((chi, cuts)), _) => {
+                for cut in cuts {
+                    let material = problem.materials()[problem.mesh.body[cut.triangle]];
+                    let square = material.strain_product(*chi, *chi);
+                    rest.add(problem.mesh.area(cut.triangle) * cut.part * (1.0 - cut.part) * square);
+                }
+            }
+            (None, None) => {}
+            (None, Some(Local::Point(point))) => {
+                for (t, chi, left) in point.means(problem)? {
+                    means.load.strains.push((t, chi));
+                    rest.add(left);
+                }
+            }
+            (None, Some(Local::Tip(_))) => return None,
+        }
+        Some(Simplified { means, rest: rest.value().max(0.0) })
+    }
 }
 
 /// The part of the data that changes.
@@ -105,6 +158,7 @@ impl Change {
 struct Slope<'a> {
     certified: &'a Certified,
     functional: &'a Functional,
+    simplified: Simplified,
     options: Options,
     change: Change,
 }
@@ -127,7 +181,7 @@ impl Slope<'_> {
     }
 
     fn add_loads(&self, problem: &mut Problem, draft: &mut Draft, by: f64) {
-        let load = &self.functional.load;
+        let load = &self.simplified.means.load;
         for (e, ends) in &load.tractions {
             if let Condition::Traction(own) = &mut problem.conditions[*e] {
                 (0..2).for_each(|end| (0..2).for_each(|c| own[end][c] += by * ends[end][c]));
@@ -140,7 +194,8 @@ impl Slope<'_> {
 
     fn add_gaps(&self, problem: &mut Problem, by: f64) {
         let pairs = problem.interfaces.iter_mut().flat_map(|interface| &mut interface.pairs);
-        for (pair, weights) in pairs.zip(&self.functional.load.weights).filter(|(_, weights)| weights.len() == 2) {
+        for (pair, weights) in pairs.zip(&self.simplified.means.load.weights).filter(|(_, weights)| weights.len() == 2)
+        {
             (0..2).for_each(|end| pair.gap[end] += by * weights[end]);
         }
     }
@@ -149,7 +204,7 @@ impl Slope<'_> {
     fn add_strains(&self, problem: &mut Problem, draft: &mut Draft, by: f64) {
         let materials = problem.materials();
         let mut made: HashMap<(usize, [u64; 3]), usize> = HashMap::new();
-        for (t, chi) in &self.functional.load.strains {
+        for (t, chi) in &self.simplified.means.load.strains {
             let of = problem.mesh.body[*t];
             problem.mesh.body[*t] = *made.entry((of, chi.map(f64::to_bits))).or_insert_with(|| {
                 let mut body = draft.bodies[of].clone();
@@ -227,7 +282,7 @@ impl Slope<'_> {
         let of = |(t, chi): &(usize, [f64; 3])| {
             problem.mesh.area(*t) * materials[problem.mesh.body[*t]].strain_product(*chi, *chi)
         };
-        let curvature: f64 = thickness * self.functional.load.strains.iter().map(of).sum::<f64>();
+        let curvature: f64 = thickness * self.simplified.means.load.strains.iter().map(of).sum::<f64>();
         let best = (2.0 * gap.max(0.0) / curvature).sqrt();
         if curvature > 0.0 && best > 0.0 && best.is_finite() {
             return best;
@@ -237,24 +292,19 @@ impl Slope<'_> {
         FIRST * self.certified.bracket.complementary.stored() / (thickness * value)
     }
 
-    /// By how much the quantity differs from that of the means of its strains on triangles that are cut, and how far that may be off: with
+    /// By how much the quantity differs from that of the means of its strains on triangles, and how far that may be off: with
     /// ‖τ − λ‖² ≤ 2G.
     fn remainder(&self) -> [f64; 2] {
-        let (Certified { problem, dual, .. }, functional) = (self.certified, self.functional);
-        let Some((chi, cuts)) = &functional.region else { return [0.0; 2] };
-        let materials = problem.materials();
+        let Certified { problem, dual, .. } = self.certified;
+        if self.simplified.rest == 0.0 {
+            return [0.0; 2];
+        }
         let of = |functional: &Functional| {
             strained(problem, functional, |t| dual.stress.degree(t), |t, sub, l| dual.stress.at(t, sub, l))
         };
-        let means = Functional { region: None, ..functional.clone() };
-        let [exact, mean] = [functional, &means].map(of);
-        let rest = |(t, part): (usize, f64)| {
-            let square = materials[problem.mesh.body[t]].strain_product(*chi, *chi);
-            problem.mesh.area(t) * part * (1.0 - part) * square
-        };
-        let square: Sum = cuts.iter().map(|cut| rest((cut.triangle, cut.part))).collect();
+        let [exact, mean] = [self.functional, &self.simplified.means].map(of);
         let gap = bracket(self.certified).map_or(f64::INFINITY, |[low, high]| (high - low).max(0.0));
-        let radius = (2.0 * gap / problem.scene.thickness * square.value().max(0.0)).sqrt();
+        let radius = (2.0 * gap / problem.scene.thickness * self.simplified.rest).sqrt();
         [exact - mean, radius + ROUNDED_MEAN * exact.abs()]
     }
 

@@ -205,3 +205,36 @@ fn discs_may_reach_springs_and_layers() {
         }
     }
 }
+
+/// Beside friction and elastic contact intervals come from energies: of a uniform stress they are its value, and of others they hold the
+/// value of a far finer mesh.
+#[test]
+fn stresses_at_points_beside_friction_and_elastic_contact() {
+    let sheared = "[[contacts]]\non = \"bottom\"\nfriction = { bound = 0.7 }\n[[tractions]]\non = \"top\"\nvalue = [0.5, -1]\n\
+                   [[tractions]]\non = \"right\"\nvalue = [-0.3, 0.5]\n[[tractions]]\non = \"left\"\nvalue = [0.3, -0.5]";
+    let pressed = "[[contacts]]\non = \"bottom\"\nstiffness = 4.0\n[[supports]]\non = \"left\"\ntype = \"roller\"\n\
+                   [[tractions]]\non = \"top\"\nvalue = [0, -1]";
+    let mises = (0.09_f64 + 1.0 - 0.3 + 0.75).sqrt();
+    for (rest, exact) in [(sheared, [-0.3, -1.0, 0.5, mises]), (pressed, [0.0, -1.0, 0.0, 1.0])] {
+        let values = [XX, YY, XY, PointValue::Invariant(Invariant::VonMises)];
+        let targets = values.map(|value| at([0.93, 0.52], value));
+        for (answer, exact) in found(plate("plane-stress", 0.3, rest), 1, &targets).iter().zip(exact) {
+            let [low, high] = answer.interval.ends;
+            assert!(low <= exact + 1e-12 && exact - 1e-12 <= high && high - low < 1e-4, "{low} {exact} {high}");
+        }
+    }
+    // The foot slides in part, and lifts in part.
+    let pushed = "[[contacts]]\non = \"bottom\"\nfriction = { bound = 0.15 }\n[[tractions]]\non = \"top\"\npressure = 0.5\n\
+                  [[tractions]]\non = \"left\"\nvalue = [0.2, 0]";
+    let tilted = "[[contacts]]\non = \"bottom\"\nstiffness = 4.0\n[[supports]]\non = \"left\"\ntype = \"roller\"\n\
+                  [[tractions]]\non = \"top\"\nvalue = [0, -1]\ngradient = [[0, 0], [-3, 0]]";
+    for rest in [pushed, tilted] {
+        let targets = [at([0.4, 0.6], YY), at([1.3, 0.4], XY)];
+        let of = |size: f64, degree| found(plate("plane-strain", size, rest), degree, &targets);
+        for (coarse, fine) in of(0.3, 2).iter().zip(of(0.08, 2)) {
+            let ([low, high], [a, b]) = (coarse.interval.ends, fine.interval.ends);
+            assert!(low <= fine.interval.value && fine.interval.value <= high, "{low} {} {high}", fine.interval.value);
+            assert!(a <= high && low <= b && b - a < 0.7 * (high - low), "[{low}, {high}] and [{a}, {b}]");
+        }
+    }
+}

@@ -4,7 +4,7 @@ use hypercircle::dual::{Condensed, Options};
 use hypercircle::element::{Elements, block};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::study::{Answer, answers, certify, refuse_quantities};
+use hypercircle::study::{Answer, Wanted, answers, certify, refuse_quantities, refuse_wanted};
 
 use crate::support::random::Random;
 use crate::support::toml::Toml;
@@ -188,17 +188,29 @@ fn a_strip_that_slides_moves_as_its_bar() {
     assert!(high - low < 0.1 * bar, "{low} {high}");
 }
 
-/// Quantities without an interval are refused, with their name and with those that have one.
+/// Quantities without an interval are told with those that have one, and nothing is refined towards them.
 #[test]
-fn what_friction_leaves_without_an_interval_is_refused() {
+fn what_friction_leaves_without_an_interval_is_told_with_what_has_one() {
     let contact = "[[contacts]]\nbetween = [\"foot\", \"seat\"]\nfriction = { bound = 1.0 }";
-    for of in
-        ["displacement = \"foot\"\ndirection = [1, 0]", "stress = \"high\"\npoint = [1.0, 1.5]\ncomponent = \"xx\""]
-    {
+    for of in [
+        "displacement = \"foot\"\ndirection = [1, 0]",
+        "displacement = \"high\"\npoint = [1.0, 1.5]\ndirection = [1, 0]",
+    ] {
         let text = format!("{}\n[[quantities]]\nname = \"this one\"\n{of}\n", rubbing(contact));
         let problem = Problem::load(Scene::parse(&text, "scene.toml".as_ref()).expect("a scene")).expect("a problem");
-        let error = refuse_quantities(&problem).expect_err("refused");
+        refuse_quantities(&problem).expect("no interval is no mistake");
+        let wanted = Wanted { name: "this one".to_string(), tolerance: 0.1 };
+        let error = refuse_wanted(&problem, &[wanted]).expect_err("refused");
         assert!(error.contains("'this one'") && error.contains("mean stresses"), "{error}");
+        let options = Options::default();
+        let certified = certify(problem, &Condensed::default(), &options).expect("an answer");
+        let interval = &answers(&certified, &options, |name| name == "this one")[0].interval;
+        assert!(!interval.has_an_end(), "{:?}", interval.ends);
+        assert!(
+            interval.reasons.iter().flatten().all(|reason| reason.contains("mean stresses")),
+            "{:?}",
+            interval.reasons
+        );
     }
     let text = rubbing("[[contacts]]\nbetween = [\"foot\", \"seat\"]") + FORCES;
     let error = Scene::parse(&text, "scene.toml".as_ref()).expect_err("no friction").to_string();

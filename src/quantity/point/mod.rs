@@ -23,6 +23,9 @@ const ON_OUTLINE: f64 = 1e-9;
 /// The part of the distance from the outline that is the radius: rounding puts no part of the disc beyond it.
 const INSIDE: f64 = 1.0 - 1e-12;
 
+/// Relative rounding error of a difference of squares.
+const ROUNDING: f64 = 1e-13;
+
 /// The value that is wanted at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wanted {
@@ -125,6 +128,25 @@ impl Point {
             }
         }
         sum.value()
+    }
+
+    /// The mean of kχ over each triangle, with ∫ c(kχ − mean):(kχ − mean) of what that leaves; `None` where no stress is wanted.
+    pub fn means(&self, problem: &Problem) -> Option<Vec<(usize, [f64; 3], f64)>> {
+        let strain = self.strain()?;
+        let square = problem.materials()[self.body].strain_product(strain, strain);
+        let of = |&t: &usize| {
+            let (mut sum, mut squares) = (crate::bounds::Sum::default(), crate::bounds::Sum::default());
+            for spot in self.disc.spots(problem.mesh.corners(t), 2 * self.kernel.degree()) {
+                let k = self.kernel.weight(spot.from_middle);
+                sum.add(spot.weight * k);
+                squares.add(spot.weight * k * k);
+            }
+            let (area, squares) = (problem.mesh.area(t), squares.value());
+            let mean = sum.value() / area;
+            let left = (squares - area * mean * mean).max(0.0) + ROUNDING * squares;
+            (t, strain.map(|e| mean * e), left * square)
+        };
+        Some(self.triangles.iter().map(of).collect())
     }
 
     /// ∫ k d·v; zero where no displacement is wanted.
