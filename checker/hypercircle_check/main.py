@@ -6,6 +6,7 @@ import io
 import json
 import sys
 import time
+import warnings
 import zipfile
 import zlib
 from pathlib import Path
@@ -60,10 +61,14 @@ class Proof:
             raise Refused(f"the proof is malformed: {error}") from None
         except MemoryError:
             raise Refused("the proof does not fit into memory") from None
+        except RecursionError:
+            raise Refused("the proof is malformed: it is nested too deep") from None
         except ArithmeticError:
             raise Refused("the numbers of the proof leave the range in which they can be enclosed") from None
 
     def _check(self, data):
+        # What overflows is refused where it is enclosed.
+        warnings.simplefilter("ignore")
         self.manifest, text = json.loads(bytes(data["manifest"])), bytes(data["scene"])
         if self.manifest["format"] != FORMAT:
             raise Refused(f"the proof has the format {self.manifest['format']}; this checker reads {FORMAT}")

@@ -202,9 +202,14 @@ class Mesh:
         if isinstance(gap, list):
             if not all(isinstance(row, list) for row in gap):
                 raise Refused(f"the gap of contact {name} is known as a range: this checker does not know those")
-            self.premises.append(f"contact {name}: the gap is linear between vertices, with the values in the proof")
+            self.premises.append(f"contact {name}: the gap is linear between vertices")
         elif not isinstance(gap, dict) and straight and ([start, end] != [rational(gap)] * 2 or count):
             raise Refused(f"the gap of contact {name} in the proof is not that of the scene")
+        if straight and not isinstance(gap, int | float):
+            for s, found in zip(data[5:7], data[7:9]):
+                if not abs(found - _gap_at(gap, float(s))) <= NEAR * (abs(found) + float(data[4])):
+                    raise Refused(f"the gap of contact {name} at the arc length {s!r} in the proof is not that of the scene")
+            self.premises.append(f"contact {name}: arc lengths are those in the proof")
         if not count:
             return [start, end], 0
         self.premises.append(f"contact {name}: the gap lies between its polynomials in the proof and these plus the excess given there")
@@ -243,6 +248,17 @@ class Mesh:
             raise Refused(f"edge {e} of {self.what}, on the outline of body '{self.body(self.owners[e, 0])}', lies on no side of its polygon {what}")
         for e in np.flatnonzero(~outer & ~joined)[:1].tolist():
             raise Refused(f"edge {e} of {self.what} joins what the scene does not bond")
+
+
+def _gap_at(gap, s):
+    """The gap of a scene at an arc length: rows [s, g], or the distance of a parabola or of a circle."""
+    if isinstance(gap, list):
+        return np.interp(s, *np.array(gap, float).T)
+    away = s - float(gap["at"])
+    if "parabola" in gap:
+        return away * away / (2 * float(gap["parabola"]))
+    radius = float(gap["circle"])
+    return away * away / (radius + np.sqrt(max(radius * radius - away * away, 0)))
 
 
 def _distances(p, a, b):

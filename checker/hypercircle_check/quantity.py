@@ -21,14 +21,18 @@ def interval(data, manifest, scene, index):
     claim = manifest["quantities"][index]
     found = [q for q in scene.raw.get("quantities", []) if q.get("name") == claim["name"]]
     step = rational(claim["step"])
-    if len(found) != 1 or step <= 0 or (found and scene.pulled(found[0], step) is None):
+    # Fields are those of a load along a unit vector, and directions of any length.
+    direction = found[0].get("direction") if found else None
+    along = length([rational(x) for x in direction or (0, 0)])
+    pull = rational(float(step) / float(along)) if along > 0 else step
+    if len(found) != 1 or step <= 0 or (found and scene.pulled(found[0], pull) is None):
         raise Refused(f"the quantity '{claim['name']}' of the proof is no mean displacement of the scene that can be verified")
     own, bounds = {name: data[f"quantity{index}_{name}"] for name in FIELDS}, []
     for of in ("stress_degrees", *(counts for counts in FIELDS.values() if counts)):
         if not np.array_equal(data[of], data[f"quantity{index}_{of}"]):
             raise Refused(f"the fields of the quantity '{claim['name']}' are of other degrees than those of the scene")
     for sign in (1, -1):
-        pulled = scene.pulled(found[0], sign * step)
+        pulled = scene.pulled(found[0], sign * pull)
         both = data | {name: data[name] + sign * float(step) * own[name] for name in FIELDS}
         meshes = [Mesh(data, of, pulled, manifest) for of in ("stress", "displacement")]
         stress, displacement = Stress(meshes[0], both), Displacement(meshes[1], both)
@@ -38,7 +42,7 @@ def interval(data, manifest, scene, index):
         size = sum(mesh.shape(t)[1] for t in range(len(mesh.triangles)) if mesh.body(t) == on) / 2
     else:
         size = sum(length(mesh.normal(e)) for e, name in enumerate(mesh.names) if name == on and mesh.owners[e, 1] < 0)
-    weight = 2 * step * scene.thickness * size * length([rational(x) for x in found[0]["direction"]])
+    weight = 2 * pull * scene.thickness * size * along
     (low, high), (back_low, back_high) = bounds
     ends = [lower((back_low - high) / weight), upper((back_high - low) / weight)]
     if not (ends[0] <= claim["upper"] and ends[1] >= claim["lower"]):

@@ -132,6 +132,45 @@ def again(folder):
     return arrays
 
 
+FAR = """
+model = { kinematics = "plane-stress" }
+geometry = { size = 0.5, polygons = [{ body = "block", points = [[40, 0], [41, 0], [41, 1], [40, 1]], edges = ["foot", "", "top", ""] }] }
+bodies = { block = { young = 2.0, poisson = 0.3, body_force = { value = [0, -1], gradient = [[0, 0], [0.1, 0]] } } }
+supports = [{ on = "foot", type = "clamped" }]
+tractions = [{ on = "top", value = [0, -1], gradient = [[0, 0], [0.3, 0]] }]
+quantities = [{ name = "top", displacement = "top", direction = [0.6, -2] }]
+"""
+
+
+def test_far_away_and_along_a_direction_of_any_length(tmp_path):
+    """Loads that vary are those of the scene wherever its coordinates count from, and a direction is one of any length."""
+    (tmp_path / "far.toml").write_text(FAR)
+    subprocess.run([PROGRAM, "solve", tmp_path / "far.toml", "--proof", "--quiet", "--out", tmp_path], check=True, timeout=300)
+    proof = check(tmp_path, tmp_path / "far.toml")
+    (_, (low, high), (claimed, most)), = proof.quantities
+    assert high - low < 1.05 * (most - claimed)
+
+
+@pytest.mark.parametrize("gap, other", [
+    ("[[0.0, 0.01], [0.5, 0.02], [1.0, 0.03]]", "[[0.0, 0.02], [0.5, 0.04], [1.0, 0.06]]"),
+    ("{ circle = 20.0, at = 0.5 }", "{ circle = 10.0, at = 0.5 }"),
+    ("{ parabola = 20.0, at = 0.5 }", "{ parabola = 20.0, at = 0.55 }"),
+])
+def test_gaps_of_another_scene(tmp_path, gap, other):
+    """A proof for one gap is none for another, whatever kind of gap it is."""
+    scene = FAR.replace("[0, -1], gradient = [[0, 0], [0.3, 0]]", "[0, -1]").replace("quantities", "# quantities")
+    scene = scene.replace("supports", "contacts = [{ on = \"top\", gap = GAP }]\nsupports").replace("value = [0, -1] }", "value = [0, 1] }")
+    scene = scene.replace("tractions", "# tractions").replace("[0, -1], gradient = [[0, 0], [0.1, 0]]", "[0, 1], gradient = [[0, 0], [0, 0]]")
+    (tmp_path / "gap.toml").write_text(scene.replace("GAP", gap))
+    subprocess.run([PROGRAM, "solve", tmp_path / "gap.toml", "--proof", "--quiet", "--out", tmp_path], check=True, timeout=300)
+    check(tmp_path)
+    arrays = again(tmp_path)
+    with_scene(arrays, lambda text: text.replace(gap, other))
+    write(arrays, tmp_path / "proof.npz")
+    with pytest.raises(Refused, match="is not that of the scene"):
+        check(tmp_path)
+
+
 def test_bodies_that_the_scene_does_not_bond(tmp_path):
     """One mesh of two bodies is no proof of a scene in which they are apart."""
     line = [PROGRAM, "solve", ROOT / "cases/bonded.toml", "--proof", "--quiet", "--out", tmp_path]

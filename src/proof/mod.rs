@@ -129,6 +129,7 @@ pub fn proof<'a>(fields: &Fields<'a>) -> Result<Vec<u8>, ProofError> {
         std::fs::read(&scene.path).map_err(|e| ProofError::Scene { path: path.clone(), reason: e.to_string() })?;
     let again = std::str::from_utf8(&text).ok().and_then(|text| crate::scene::Scene::parse(text, &scene.path).ok());
     let same = |again: crate::scene::Scene| {
+        let again = if scene.origin == [0.0; 2] { again } else { again.counted_from(scene.origin) };
         let conditions = again.supports == scene.supports && again.tractions == scene.tractions;
         conditions && again.bodies == scene.bodies && again.contacts == scene.contacts
     };

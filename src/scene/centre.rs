@@ -18,7 +18,7 @@ impl Scene {
     ///
     /// A traction P(x) = value + gradient · x is rewritten in the new coordinates, as are body forces and clamped boundaries; regions and
     /// points of quantities move along.
-    pub(crate) fn about_middle<'a>(mut self, points: impl Iterator<Item = &'a [f64; 2]> + Clone) -> (Scene, [f64; 2]) {
+    pub(crate) fn about_middle<'a>(self, points: impl Iterator<Item = &'a [f64; 2]> + Clone) -> (Scene, [f64; 2]) {
         let [x, y] = [0, 1].map(|c| range(points.clone().map(|p| p[c])));
         let size = (x[1] - x[0]).max(y[1] - y[0]);
         // Half and double of the middle enclose all coordinates, and within that range differences are exact.
@@ -26,9 +26,11 @@ impl Scene {
             let middle = low + 0.5 * (high - low);
             if middle.abs() > NEAR * size && middle.is_finite() { middle } else { 0.0 }
         });
-        if middle == [0.0; 2] {
-            return (self, middle);
-        }
+        (if middle == [0.0; 2] { self } else { self.counted_from(middle) }, middle)
+    }
+
+    /// The scene with coordinates that count from a point.
+    pub(crate) fn counted_from(mut self, middle: [f64; 2]) -> Scene {
         if let MeshSource::Geometry { polygons, .. } = &mut self.draft.mesh {
             for polygon in polygons {
                 let through = polygon.arcs.iter_mut().map(|arc| &mut arc.through);
@@ -55,7 +57,7 @@ impl Scene {
         self.draft.boundaries.iter_mut().for_each(|boundary| boundary.edges.shift(middle));
         self.draft.quantities.iter_mut().for_each(|quantity| quantity.shift(middle));
         self.draft.origin = [0, 1].map(|c| self.origin[c] + middle[c]);
-        (self, middle)
+        self
     }
 
     /// A point in the coordinates of the scene as it was written.
