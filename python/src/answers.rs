@@ -72,7 +72,7 @@ impl Quantity {
 
     /// Whether `value` may be the exact one.
     fn __contains__(&self, value: f64) -> bool {
-        self.of.outside(value) == 0.0
+        !value.is_nan() && self.of.outside(value) == 0.0
     }
 
     fn __repr__(&self) -> String {

@@ -7,6 +7,7 @@ use crate::errors::fault;
 use crate::kinematics::kinematics_named;
 use hypercircle::element::subtriangle::{self, Moments};
 use hypercircle::element::{Block, EquilibriumElement, Material, Section};
+use hypercircle::scene::Kinematics;
 
 /// A counter-clockwise triangle with finite corners.
 fn proper(corners: [[f64; 2]; 3]) -> PyResult<[[f64; 2]; 3]> {
@@ -38,7 +39,13 @@ pub fn element<'py>(
     if !elastic || !body_force.iter().all(|f| f.is_finite()) {
         return Err(fault("young must be above zero, poisson in (-1, 1/2), and body_force finite"));
     }
-    let material = Material::isotropic(kinematics_named(kinematics)?, young, poisson);
+    let kinematics = kinematics_named(kinematics)?;
+    if kinematics == Kinematics::Axisymmetric {
+        return Err(fault(
+            "the block element is one of plane strain and plane stress; use plane-strain or plane-stress",
+        ));
+    }
+    let material = Material::isotropic(kinematics, young, poisson);
     let modes = Block.modes(corners, &material, &body_force.into());
     let count = modes.parameters();
     let fields = Section::Slice.mode_stresses(&Block, corners, &modes);

@@ -10,5 +10,6 @@ use hypercircle::scene::Kinematics;
 /// # Errors
 /// `InputError` for any other.
 pub fn kinematics_named(name: &str) -> PyResult<Kinematics> {
-    Kinematics::named(name).ok_or_else(|| fault(format!("kinematics '{name}'; use plane-strain or plane-stress")))
+    Kinematics::named(name)
+        .ok_or_else(|| fault(format!("kinematics '{name}'; use plane-strain, plane-stress or axisymmetric")))
 }

@@ -18,8 +18,12 @@ use hypercircle::cli::CliError;
 use hypercircle::cli::commands::solve::{Args, solved};
 use hypercircle::cli::session::Session;
 use hypercircle::element::{Elements, MAX_DEGREE};
-use hypercircle::problem::Problem;
+use hypercircle::problem::{Problem, ProblemError};
 use hypercircle::scene;
+
+/// How often a mesh is refined at most, as by the command line, and its triangles then.
+const MOST_REFINEMENTS: i64 = 12;
+const MOST_TRIANGLES: usize = 20_000_000;
 
 /// A scene: bodies, supports, tractions, contacts, and what it is solved for. `Scene(path)` reads a TOML file,
 /// `Scene.from_text(text)` a text.
@@ -112,9 +116,20 @@ impl Scene {
     /// `normal`), `boundaries` (the name of each edge, or `None`), `interfaces` (each pair has the `direction` of contact at its two ends), `bodies`, `kinematics`,
     /// `thickness`.
     #[pyo3(signature = (refine = 0))]
-    fn problem<'py>(&self, py: Python<'py>, refine: u32) -> PyResult<Bound<'py, PyDict>> {
-        let made = aside(py, 1, || Problem::load((*self.of).clone())?.refine_uniform(refine as usize))?;
-        problem_entry(py, made.map_err(|error| fault(format!("{}: {error}", self.of.path.display())))?)
+    fn problem<'py>(&self, py: Python<'py>, refine: i64) -> PyResult<Bound<'py, PyDict>> {
+        if !(0..=MOST_REFINEMENTS).contains(&refine) {
+            return Err(fault(format!("refine = {refine} is not in 0..={MOST_REFINEMENTS}")));
+        }
+        let refused = |error: ProblemError| fault(format!("{}: {error}", self.of.path.display()));
+        let coarse = aside(py, 1, || Problem::load((*self.of).clone()))?.map_err(refused)?;
+        let triangles = coarse.mesh.triangles.len() * 4_usize.pow(refine as u32);
+        if triangles > MOST_TRIANGLES {
+            return Err(fault(format!(
+                "refine = {refine} makes {triangles} triangles, more than {MOST_TRIANGLES}; refine less"
+            )));
+        }
+        let made = aside(py, 1, || coarse.refine_uniform(refine as usize))?;
+        problem_entry(py, made.map_err(refused)?)
     }
 
     /// Solves in stresses and brackets the energy, with the options of `hypercircle solve`. `degrees` has one degree for each

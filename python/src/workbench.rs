@@ -1,8 +1,10 @@
 //! The element workbench from Python.
 
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::DMatrix;
+use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 
 use crate::errors::fault;
@@ -28,12 +30,26 @@ fn called(
     nodes: &[[f64; 2]],
     material: &Material,
     order: Order,
+    ended: &Mutex<Option<PyErr>>,
 ) -> Result<DMatrix<f64>, String> {
     Python::attach(|py| {
+        let mut ended = ended.lock().unwrap_or_else(PoisonError::into_inner);
+        if ended.is_some() {
+            return Err("interrupted".to_string());
+        }
         let rows: Vec<Vec<f64>> = nodes.iter().map(|x| x.to_vec()).collect();
         let array = py.import("numpy").and_then(|numpy| numpy.call_method1("array", (rows,)));
         let found = array.and_then(|nodes| stiffness.call1(py, (nodes, material.young, material.poisson)));
-        let k = matrix(found.map_err(|e| e.to_string())?.bind(py))?;
+        let found = found.and_then(|k| py.check_signals().map(|()| k)).map_err(|error| {
+            let said = error.to_string();
+            // What is no error of the formula ends the call: ctrl-C, and an exit.
+            if !error.is_instance_of::<PyException>(py) {
+                *ended = Some(error);
+            }
+            said
+        })?;
+        drop(ended);
+        let k = matrix(found.bind(py))?;
         let (count, size) = (nodes.len(), 2 * nodes.len());
         if k.shape() != (size, size) {
             return Err(format!("K is {} × {} for {count} nodes", k.nrows(), k.ncols()));
@@ -118,22 +134,29 @@ pub fn workbench<'py>(
         _ => return Err(fault("give young and poisson, or neither")),
     };
     let method = element.getattr_opt("stiffness")?.or_else(|| element.is_callable().then(|| element.clone()));
+    let ended = Arc::new(Mutex::new(None));
     let made = match method {
         Some(stiffness) => {
-            let stiffness = stiffness.unbind();
+            let (stiffness, ended) = (stiffness.unbind(), Arc::clone(&ended));
             let usual = material(1.0, 0.3)?;
             DisplacementElement::of_formula(name, nodes, given.unwrap_or(usual), move |nodes, material| {
-                called(&stiffness, nodes, material, order)
+                called(&stiffness, nodes, material, order, &ended)
             })
         }
         None => matrix(element).and_then(|k| DisplacementElement::of_matrix(name, &k, nodes, order, given)),
     };
+    if let Some(error) = ended.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        return Err(error);
+    }
     let made = made.map_err(fault)?;
     let usual = made.precision;
     let said = precision.map(hypercircle::workbench::precision).transpose().map_err(fault)?;
     let made = made.with_precision(said.unwrap_or(usual));
     // The formula comes back for the interpreter.
     let report = py.detach(move || Report::of_displacement(&made, &options));
+    if let Some(error) = ended.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        return Err(error);
+    }
     written(py, &report, out)
 }
 

@@ -7,7 +7,7 @@ use crate::cause::told;
 use crate::report::CSS;
 use crate::report::Stored;
 use crate::report::document::document;
-use crate::report::text::number::{clean, digits_to_tell, grouped, percent, seconds, significant};
+use crate::report::text::number::{at_most_percent, clean, digits_to_tell, grouped, seconds, significant};
 
 const MORE_CSS: &str = "td.s{white-space:nowrap;font-weight:600}tr.good td.s{color:var(--good)}tr.bad td.s{color:var(--bad)}\
 tr.warn td.s{color:var(--warn)}td.w{min-width:320px}pre{white-space:pre-wrap;overflow-wrap:anywhere;font:.85em ui-monospace,Menlo,monospace;\
@@ -120,8 +120,8 @@ fn row(gathered: &Gathered, i: usize) -> Markup {
             td.s { (entry.status.symbol()) " " (job.word(entry.status)) }
             td.n {
                 @match energy.and_then(|e| e.relative_error_bound) {
-                    Some(bound) if energy.is_some_and(|e| e.guaranteed) => (percent(bound)),
-                    Some(bound) => span title="for the data as represented on the mesh" { "(" (percent(bound)) ")" },
+                    Some(bound) if energy.is_some_and(|e| e.guaranteed) => (at_most_percent(bound)),
+                    Some(bound) => span title="for the data as represented on the mesh" { "(" (at_most_percent(bound)) ")" },
                     None => "–",
                 }
             }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::data::{Entry, Gathered, Job};
 use crate::report::text::markdown::{cell, code};
-use crate::report::text::number::{percent, seconds};
+use crate::report::text::number::{at_most_percent, seconds};
 use crate::scene::counted;
 
 /// Bytes of the whole text.
@@ -77,7 +77,8 @@ fn table(text: &mut String, job: &Job, order: &[usize]) {
             (_, Some(first)) => format!("`{}`", code(first)),
             (_, None) => cell(&shortened(&entry.verdict, 300)),
         };
-        let bound = entry.energy.and_then(|energy| energy.relative_error_bound).map_or("–".to_string(), percent);
+        let bound =
+            entry.energy.and_then(|energy| energy.relative_error_bound).map_or("–".to_string(), at_most_percent);
         let _ = writeln!(
             text,
             "| `{}` | {} {} | {bound} | {} | {said} |",

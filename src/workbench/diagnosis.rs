@@ -209,8 +209,13 @@ fn with_factor(k: &DMatrix<f64>, trial: &Trial) -> Option<Trial> {
         return None;
     }
     let factor = k.dot(&trial.matrix) / trial.matrix.norm_squared();
-    let sentence = format!("{}, and K is {} times too large", trial.sentence, significant(factor, 6));
-    factor.is_finite().then(|| Trial {
+    let of_k = match factor {
+        _ if (factor + 1.0).abs() < 1e-9 => "has the wrong sign".to_string(),
+        _ => format!("is {} times what it should be", significant(factor, 6)),
+    };
+    let sentence = format!("{}, and K {of_k}", trial.sentence);
+    // Next to nothing of a matrix explains none.
+    (factor.is_finite() && factor.abs() > 1e-9).then(|| Trial {
         rank: trial.rank + 5,
         cause: trial.cause,
         sentence,

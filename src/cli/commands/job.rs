@@ -16,7 +16,7 @@ use crate::job::{self, Entry, Gathered, Job, JobError, Plan, Planned, Runner, Sh
 use crate::process::limit;
 use crate::process::signals::LastWords;
 use crate::report;
-use crate::report::text::number::{percent, seconds};
+use crate::report::text::number::{at_most_percent, seconds};
 use crate::scene::{Scene, counted};
 use crate::study::{Accepted, Baseline, Signature};
 
@@ -235,7 +235,7 @@ fn complaints(gathered: &Gathered) -> Vec<ci::Complaint> {
 fn line(plan: &Plan, entry: &Entry) -> String {
     let word = if plan.command == "solve" && entry.exit == 0 { "passed" } else { entry.status.words() };
     let bound = entry.energy.and_then(|energy| energy.relative_error_bound);
-    let bound = bound.map_or(String::new(), |bound| format!(", error at most {}", percent(bound)));
+    let bound = bound.map_or(String::new(), |bound| format!(", error at most {}", at_most_percent(bound)));
     let why = match (entry.exit, entry.failing.first()) {
         (0, _) => String::new(),
         (_, Some(first)) => format!(": {first}"),

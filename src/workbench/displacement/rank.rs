@@ -17,6 +17,9 @@ pub const RANK: Property<DisplacementElement> = Property {
 
 /// Entries that are less exact may hide a soft motion.
 const FEW_DIGITS: f64 = 1e-7;
+/// What rounding leaves of the energy of a motion without any, relative to that of the stiffest, and what is far from it.
+const NOTHING: f64 = 1e-15;
+const FAR: f64 = 1e3;
 /// A part of a motion that counts.
 const PART: f64 = 0.1;
 
@@ -67,6 +70,16 @@ fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
     }
     let found = spurious(&e.matrix, &rigid, e.precision);
     let singular = e.matrix.clone().singular_values();
+    let stored = |m: &DMatrix<f64>| -> Vec<f64> {
+        let of = |c: DVector<f64>| (c.dot(&(&e.matrix * &c)) / c.norm_squared() / singular.max()).abs();
+        m.column_iter().map(|c| of(c.into_owned())).collect()
+    };
+    let of_rigid = stored(&rigid).into_iter().fold(NOTHING, f64::max);
+    if found.ncols() > 0 && stored(&found).into_iter().all(|own| own > FAR * of_rigid) {
+        return Err(Fault::NotMade(
+            "the element is too thin to tell motions that store little from those that store nothing".into(),
+        ));
+    }
     let count = found.ncols();
     let mut sizes: Vec<f64> = singular.iter().map(|s| s / singular.max()).collect();
     sizes.sort_by(f64::total_cmp);
@@ -88,9 +101,9 @@ fn measure(e: &DisplacementElement) -> Result<Measured, Fault> {
         part
     });
     let is_hourglass = to_and_fro.as_ref().is_some_and(|part| part.column_iter().all(|c| c.norm() > 0.7));
-    let plural = if count == 1 { "motion stores" } else { "motions store" };
+    let [motions, are] = if count == 1 { ["motion stores", "is"] } else { ["motions store", "are"] };
     let kind = if is_hourglass { "hourglass" } else { "spurious" };
-    let text = format!("{count} {kind} {plural} nothing and are not rigid: the rank of K is too low by {count}.");
+    let text = format!("{count} {kind} {motions} nothing and {are} not rigid: the rank of K is too low by {count}.");
     // Along x and along y, rather than any two of their combinations.
     let shown = to_and_fro.filter(|_| is_hourglass && count == 2).unwrap_or(found);
     let panels: Vec<DVector<f64>> = shown.column_iter().map(|c| c.into_owned()).collect();
