@@ -163,6 +163,8 @@ def _minimum(comm, mesh, model, constraints, touching: Touching, begin: np.ndarr
     steps = solution.iterations
     at, stored = evaluated(solution)
     rest = solution.energy
+    # Rounding of the energies that are subtracted, where contact that opens leaves none.
+    rounding = np.finfo(float).eps * max(solution.strain_energy, stored)
     for count in range(STEPS):
         found = step(at)
         steps += found.iterations
@@ -170,7 +172,7 @@ def _minimum(comm, mesh, model, constraints, touching: Touching, begin: np.ndarr
         change = ahead - at
         slope = slope_at(at, change)
         curved = found.energy - rest - slope
-        allowed = SETTLED * max(found.strain_energy, stored_ahead)
+        allowed = max(SETTLED * max(found.strain_energy, stored_ahead), rounding)
         part, energy = 1.0, rest + stored
         for _ in range(HALVINGS):
             there = touching.energy(at + part * change) if part < 1.0 else stored_ahead

@@ -231,6 +231,11 @@ impl Problem {
         no_gap && !self.conditions.iter().any(Condition::is_moved)
     }
 
+    /// True if −2𝓛(u) is the work of the loads: nothing is prescribed, no gap closes, and neither friction nor initial strains take part.
+    pub fn only_loads_work(&self) -> bool {
+        self.is_cone() && !self.has_friction() && self.scene.bodies.iter().all(|body| body.initial.is_none())
+    }
+
     /// True if the direction of contact turns along any edge.
     pub fn contact_turns(&self) -> bool {
         self.pairs().any(|pair| !pair.direction.is_constant())

@@ -152,11 +152,11 @@ pub struct Energy {
     /// Largest relative energy-norm error of the mid-field (λ_h + σ(v))/2, with v the displacement that gives `upper`:
     /// half of `relative_error_bound` where no contact complementarity takes part.
     pub mid_error_bound: f64,
-    /// Two numbers between which −2𝓛(u) lies: the work ∫F·u + ∫P·u of the loads, less the work ∫T·u0 + ∫T_n g of the
-    /// reactions on prescribed displacements and gaps.
+    /// Two numbers between which −2𝓛(u) lies: the work ∫F·u + ∫P·u of the loads and ∫τ:ε0 of the stresses on initial strains, less the work
+    /// ∫T·u0 + ∫T_n g of the reactions on prescribed displacements and gaps.
     pub enclosed_work: [f64; 2],
     /// Two numbers between which the compliance ∫F·u + ∫P·u lies, twice the elastic energy; `null` where prescribed
-    /// displacements, gaps or friction take part in the work.
+    /// displacements, gaps, initial strains or friction take part in the work.
     pub compliance: Option<[f64; 2]>,
     /// Whether the bracket holds for the scene as written; otherwise `notes` say what weakens it.
     pub guaranteed: bool,
@@ -179,7 +179,7 @@ pub struct DataRangeSummary {
     pub lower: f64,
     /// No energy of data in these ranges is higher; `null` where no upper bound could be built.
     pub upper: Option<f64>,
-    /// Two numbers between which the compliance lies for all of them; `null` where prescribed displacements or gaps take part.
+    /// Two numbers between which the compliance lies for all of them; `null` where prescribed displacements, gaps or initial strains take part.
     pub compliance: Option<[f64; 2]>,
     /// The exact energy at the other ends lies between these; `null` where no upper bound could be built.
     pub other_end: Option<[f64; 2]>,

@@ -44,7 +44,7 @@ pub(super) fn data_range(problem: &Problem, lowest: &Bracket, other: &OtherEnd) 
         lower,
         upper,
         compliance: upper
-            .filter(|_| problem.is_cone() && !problem.has_friction() && other.is_cone)
+            .filter(|_| problem.only_loads_work() && other.is_cone)
             .map(|upper| [0.0 - 2.0 * upper, 0.0 - 2.0 * lower]),
         other_end: other.bracket,
     }

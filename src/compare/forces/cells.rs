@@ -103,14 +103,15 @@ impl NodalForces {
         }
     }
 
-    /// a(u, u) by the rule that the forces are made with.
-    pub fn energy(&self, candidate: &Candidate) -> f64 {
+    /// The energy ½a(u, u), with that of springs and elastic contact, by the rule that the forces are made with.
+    pub fn stored(&self, candidate: &Candidate) -> f64 {
         let nodes = self.left.iter().zip(&self.load).enumerate();
         let term = |(i, (left, load)): (usize, (&[f64; 2], &[f64; 2]))| {
             let u = candidate.value(i);
             (left[0] + load[0]) * u[0] + (left[1] + load[1]) * u[1]
         };
-        nodes.map(term).sum()
+        // Pressures of elastic contact store nothing on its gaps.
+        0.5 * (nodes.map(term).sum::<f64>() - self.on_gaps)
     }
 
     /// Forces of a candidate with quadrilaterals, by a rule with `points` points in each direction.

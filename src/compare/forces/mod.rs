@@ -34,6 +34,10 @@ pub struct NodalForces {
     pub triangle: Vec<usize>,
     /// ∫ k (j − g)₊ g of elastic contact: the work of its pressures on its gaps.
     pub on_gaps: f64,
+    /// The forces of springs, elastic layers and elastic contact.
+    pub sprung: Vec<[f64; 2]>,
+    /// Their part of [`Self::size`].
+    pub sprung_size: Vec<f64>,
 }
 
 impl NodalForces {
@@ -57,6 +61,8 @@ impl NodalForces {
             stiffness: vec![0.0; count],
             triangle: vec![0; count],
             on_gaps: 0.0,
+            sprung: vec![[0.0; 2]; count],
+            sprung_size: vec![0.0; count],
         }
     }
 

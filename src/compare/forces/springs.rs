@@ -49,8 +49,12 @@ impl NodalForces {
                     energy += if forces.is_none() { 0.5 * force * jump[i] } else { 0.0 };
                     for (node, sign) in [(first.get(i), 1.0), (second.get(i), -1.0)] {
                         let Some(&node) = node else { continue };
-                        (0..2).for_each(|c| self.left[node][c] += sign * force * axis[c]);
-                        self.size[node] += spread;
+                        for forces in [&mut self.left, &mut self.sprung] {
+                            (0..2).for_each(|c| forces[node][c] += sign * force * axis[c]);
+                        }
+                        for sizes in [&mut self.size, &mut self.sprung_size] {
+                            sizes[node] += spread;
+                        }
                         self.stiffness[node] += weight(i);
                     }
                 }

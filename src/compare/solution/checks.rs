@@ -3,8 +3,15 @@
 use super::{SOLVER, Site, Solution, Weak};
 use crate::bounds::Hold;
 use crate::compare::ceiling::Allowance;
+use crate::compare::name::OfRun;
+use crate::compare::name::OfSolutionContact::{
+    self, Friction, Penetration, PenetrationAtNodes, PressureWhereOpen, Pulling,
+};
 use crate::compare::{Allowances, Basis, Check};
 use crate::problem::Scales;
+
+/// Forces on a body below this part of those of the scene are none.
+const NO_FORCE: f64 = 1e-6;
 
 /// Number of nodes with a large residual that are named.
 const NAMED: usize = 3;
@@ -15,7 +22,7 @@ impl Solution<'_> {
         let mut checks =
             vec![self.residual_check(), self.supports_check(), self.reactions_check(scales), self.energy_check(scales)];
         for (index, interface) in self.problem.interfaces.iter().enumerate() {
-            let name = |what: &str| format!("solution/contact/{}/{what}", interface.name);
+            let name = |of: OfSolutionContact| of.of(&interface.name);
             if let Some(weak) = self.holds_weakly(index) {
                 checks.extend(self.weak_checks(index, weak, name));
                 continue;
@@ -24,22 +31,22 @@ impl Solution<'_> {
             if interface.pairs.is_empty() {
                 continue;
             }
-            checks.push(self.penetration_check(index, &name("penetration")));
+            checks.push(self.penetration_check(index, &name(Penetration)));
             let [(pulling, pulled), (open, opened)] = self.complementarity(index);
             let forces = self.of_forces();
             checks.push(self.claimed(
-                &name("pulling"),
+                &name(Pulling),
                 pulling,
                 forces,
                 format!("Contact pushes and never pulls: the sum of the nodal forces that pull{pulled}, relative to all forces."),
             ));
             checks.push(self.claimed(
-                &name("pressure-where-open"),
+                &name(PressureWhereOpen),
                 open,
                 forces,
                 format!("Contact carries a force only where it is closed: the sum of the nodal forces at open nodes{opened}, relative to all forces."),
             ));
-            checks.extend(self.friction_check(index, &name("friction")));
+            checks.extend(self.friction_check(index, &name(Friction)));
         }
         allow.apply(&mut checks);
         checks
@@ -56,7 +63,7 @@ impl Solution<'_> {
                 self.candidate.degree,
                 piece.bodies.join(", ")
             );
-            return self.claimed("solution/residual", piece.residual, piece.allowance, what);
+            return self.claimed(OfRun::Residual.name(), piece.residual, piece.allowance, what);
         }
         let places = match residual > self.allowed() {
             true => format!(" Most is left at {}.", worst.join("; ")),
@@ -76,7 +83,7 @@ impl Solution<'_> {
              supports and along contacts: what is left of the nodal forces, relative to all of them.{places}{digits}",
             self.candidate.degree
         );
-        self.claimed("solution/residual", residual, self.of_forces(), what)
+        self.claimed(OfRun::Residual.name(), residual, self.of_forces(), what)
     }
 
     fn force_at(&self, node: usize) -> String {
@@ -94,7 +101,7 @@ impl Solution<'_> {
         let depth = worst.map_or(0.0, off);
         let place = worst.filter(|_| depth > 0.0).map_or(String::new(), |n| format!(", most at {}", self.named(n)));
         self.claimed(
-            "solution/supports",
+            OfRun::Supports.name(),
             self.relative(depth),
             self.of_displacements(1.0),
             format!(
@@ -111,28 +118,34 @@ impl Solution<'_> {
     fn reactions_check(&self, scales: &Scales) -> Check {
         let (label, count) = self.bodies().labels();
         // What the balance of a body misses: supports, contacts and loads, which leave the residual.
-        let (mut sum, mut size) = (vec![[0.0; 2]; count], vec![0.0; count]);
+        let (mut sum, mut size, mut rounded) = (vec![[0.0; 2]; count], vec![0.0; count], vec![0.0; count]);
         for (node, rest) in self.rest.iter().enumerate() {
             let part = label[node];
             (0..2).for_each(|c| sum[part][c] += rest[c]);
-            let [load, held] = [self.forces.load[node], self.forces.left[node]].map(|f| f[0].hypot(f[1]));
-            size[part] += load + held;
+            let forces = [self.forces.load[node], self.forces.left[node], self.forces.sprung[node]];
+            size[part] += forces.iter().map(|f| f[0].hypot(f[1])).sum::<f64>();
+            // Stresses of a cell are in equilibrium whatever its displacements are rounded to.
+            rounded[part] += self.candidate.precision * self.forces.sprung_size[node];
         }
         let missing = |part: usize| sum[part][0].hypot(sum[part][1]);
-        let relative = |part: usize| {
-            let size = size[part].max(scales.round_off.force);
-            if size > 0.0 { missing(part) / size } else { 0.0 }
-        };
+        // What is all but none beside the forces of the scene is held against these.
+        let least = scales.round_off.force.max(NO_FORCE * self.applied());
+        let against = |part: usize| size[part].max(least);
+        let relative = |part: usize| if against(part) > 0.0 { missing(part) / against(part) } else { 0.0 };
         // Forces of closed coefficients alone leave less than those taken at nodes where the direction of contact turns.
         let is_pushed = self.pushed_among(&label, count);
         let worst = (0..count).filter(|part| !is_pushed[*part]);
         let worst = worst.max_by(|a, b| relative(*a).total_cmp(&relative(*b)));
         let value = worst.map_or(self.residual(), relative);
         let force = worst.map_or(String::new(), |p| format!(" ({:.3e}, {:.3e}) is missing.", sum[p][0], sum[p][1]));
+        let mut allowance = self.of_forces();
+        if let Some(part) = worst.filter(|part| against(*part) > 0.0) {
+            allowance.digits = allowance.digits.max(rounded[part] / against(part));
+        }
         self.claimed(
-            "solution/reactions",
+            OfRun::SolutionReactions.name(),
             value,
-            self.of_forces(),
+            allowance,
             format!(
                 "Forces of supports and contacts, from the stresses of the field, are in equilibrium with the loads on every body.{force}"
             ),
@@ -162,7 +175,7 @@ impl Solution<'_> {
         let scale = left.abs().max(work.abs()).max(scales.round_off.energy);
         self.with_digits(self.of_forces(), |part| {
             Check::equal(
-                "solution/energy-identity",
+                OfRun::EnergyIdentity.name(),
                 left,
                 right,
                 scale * part + self.of_the_rule + scales.round_off.energy,
@@ -207,13 +220,13 @@ impl Solution<'_> {
     }
 
     /// Checks of contact `interface` in the mean, with a remark on its nodes.
-    fn weak_checks(&self, interface: usize, weak: &Weak, name: impl Fn(&str) -> String) -> Vec<Check> {
+    fn weak_checks(&self, interface: usize, weak: &Weak, name: impl Fn(OfSolutionContact) -> String) -> Vec<Check> {
         let total = self.applied().max(self.carried(interface));
         let share = |force: f64| if total > 0.0 { force / total } else { force };
         let law = weak.in_words();
         let part = self.weak_part(interface);
         let depth = self.deepest(interface).map_or(0.0, |site| self.excess[site].max(0.0));
-        let mut nodes = self.penetration_check(interface, &name("penetration-at-nodes"));
+        let mut nodes = self.penetration_check(interface, &name(PenetrationAtNodes));
         nodes.basis = Basis::Chosen;
         nodes.why = format!(
             "Contact holds {law}. At the nodes the sides overlap by up to {depth:.3e}, which is no mistake of such a method; the bounds of \
@@ -221,13 +234,13 @@ impl Solution<'_> {
         );
         vec![
             self.claimed(
-                &name("penetration"),
+                &name(Penetration),
                 self.relative(weak.penetration),
                 self.of_displacements(2.0),
                 format!("Contact holds {law}: the largest of these means of the penetration, relative to the largest displacement."),
             ),
             Check::at_most(
-                &name("pulling"),
+                &name(Pulling),
                 share(weak.pulling),
                 0.0,
                 part,
@@ -235,7 +248,7 @@ impl Solution<'_> {
                 "Contact pushes and never pulls: the sum of the forces of its law that pull, relative to all forces.",
             ),
             Check::at_most(
-                &name("pressure-where-open"),
+                &name(PressureWhereOpen),
                 weak.misfit,
                 0.0,
                 part,

@@ -50,9 +50,14 @@ impl Solution<'_> {
         }
         let has = digits(has).round();
         let digits = if needed == 1.0 { "digit is" } else { "digits are" };
+        let remedy = match self.candidate.name.ends_with(".frd") {
+            true => {
+                "Ask CalculiX for `*NODE PRINT` of all nodes with U, and hand in the .dat, which has one digit more."
+            }
+            false => "Write the displacements with more digits.",
+        };
         format!(
-            "This could not be decided: {needed} {digits} needed to tell {part} % of E; this file has {has}. Write the \
-             displacements with more digits."
+            "This could not be decided: {needed} {digits} needed to tell {part} % of E; this file has {has}. {remedy}"
         )
     }
 }

@@ -191,7 +191,7 @@ impl<'a> Solution<'a> {
         }
         // ½a(u, u), whatever strains the bodies have without load.
         let initial = problem.scene.bodies.iter().any(|body| !body.initial.is_none());
-        let strain = if points.is_some() || initial { 0.5 * forces.energy(candidate) } else { strain };
+        let strain = if points.is_some() || initial { forces.stored(candidate) } else { strain };
         let mut solution = Self::made_of(problem, candidate, strain, (forces, points, None))?;
         // These laws are read off the stresses of triangles.
         if solution.points.is_none() {
@@ -225,7 +225,7 @@ impl<'a> Solution<'a> {
     /// [`NoUpperBound`] where supports contradict each other.
     pub fn turned(problem: &'a Problem, candidate: &'a Candidate, rule: Rule) -> Result<Self, NoUpperBound> {
         let forces = turned::forces(problem, candidate, rule).0;
-        let strain = 0.5 * forces.energy(candidate);
+        let strain = forces.stored(candidate);
         let points = (!candidate.cells.is_empty()).then_some(rule.points);
         Self::made_of(problem, candidate, strain, (forces, points, Some(rule)))
     }

@@ -46,11 +46,11 @@ fn energies(report: &Report, energy: &Energy) -> Markup {
         Some(_) => ("compliance", "encloses ∫F·u + ∫P·u, the work of the loads: twice the elastic energy"),
         None if energy.friction_work.is_some() => (
             "enclosed work",
-            "encloses the work of the loads less that of friction and of the reactions on prescribed displacements and gaps",
+            "encloses the work of the loads and of stresses on initial strains, less that of friction and of the reactions on prescribed displacements and gaps",
         ),
         None => (
             "enclosed work",
-            "encloses the work of the loads less that of the reactions on prescribed displacements and gaps",
+            "encloses the work of the loads and of stresses on initial strains, less that of the reactions on prescribed displacements and gaps",
         ),
     };
     let mut rows = vec![

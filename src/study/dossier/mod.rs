@@ -215,7 +215,7 @@ fn energy(
             _ => in_numbers(mid_error / (2.0 * energy).sqrt()),
         },
         enclosed_work: enclosed_work(upper, sharpest),
-        compliance: (problem.is_cone() && !problem.has_friction()).then(|| enclosed_work(upper, sharpest)),
+        compliance: problem.only_loads_work().then(|| enclosed_work(upper, sharpest)),
         guaranteed,
         guarantee,
         guaranteed_for: if follows_coulomb(&problem.scene) { "friction bound" } else { "scene" }.to_string(),

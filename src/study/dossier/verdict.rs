@@ -2,6 +2,7 @@
 
 use super::{Findings, in_numbers};
 use crate::cause::Cause;
+use crate::compare::name::{GIVEN, Name};
 use crate::report::text::number::{at_most_percent, digits_to_tell, enclosing, percent};
 use crate::report::{Energy, Status};
 use crate::scene::capital;
@@ -82,12 +83,25 @@ fn of_which(findings: &Findings<'_>) -> (&'static str, String) {
 
 /// Says where values lie that were given without a field and passed; `None` without any.
 fn given_values(findings: &Findings<'_>) -> Option<String> {
-    let of_value = |name: &'_ str| name.strip_prefix("quantity/")?.strip_suffix("/given").map(str::to_string);
-    let names: Vec<String> = findings.comparison.checks.iter().filter_map(|check| of_value(&check.name)).collect();
+    let of_value = |name: &str| match Name::read(name) {
+        Name::Quantity(quantity, GIVEN) => Some(quantity.to_string()),
+        _ => None,
+    };
+    let given = || findings.comparison.checks.iter().filter_map(|check| Some((of_value(&check.name)?, check)));
+    let names: Vec<String> = given().map(|(name, _)| name).collect();
+    let rounded = given().any(|(_, check)| check.difference.is_some_and(|difference| difference > 0.0));
+    let but = |digits: &'static str| if rounded { digits } else { "" };
     match names.as_slice() {
         [] => None,
-        [one] => Some(format!("The value given for {one} lies in its interval.")),
-        several => Some(format!("The values given for {} lie in their intervals.", several.join(", "))),
+        [one] => Some(format!(
+            "The value given for {one} lies in its interval{}.",
+            but(", but for the digits that it lacks")
+        )),
+        several => Some(format!(
+            "The values given for {} lie in their intervals{}.",
+            several.join(", "),
+            but(", but for the digits that they lack")
+        )),
     }
 }
 

@@ -15,6 +15,7 @@ use self::space::Space;
 use super::Solution;
 use super::weak::{OF_THE_RULE, Shape, Weak, nitsche};
 use crate::compare::Basis;
+use crate::compare::name::{OfRun, OfSolutionContact};
 use crate::compare::{Allowances, Check};
 use crate::problem::{Interface, Problem, Scales};
 
@@ -88,7 +89,7 @@ impl<'a> Nonmatching<'a> {
                 "The sides of contact {name} have different vertices, more than {MOST_ROWS} together, and the forces between them were \
                  not looked for; give both sides the same vertices."
             );
-            let forces = ["solution/residual", "solution/reactions", "solution/energy-identity"];
+            let forces = [OfRun::Residual, OfRun::SolutionReactions, OfRun::EnergyIdentity].map(OfRun::name);
             for check in checks.iter_mut().filter(|check| forces.contains(&check.name.as_str())) {
                 *check = Check::not_made(&check.name, check.allowed, check.basis, why.as_str());
             }
@@ -101,7 +102,8 @@ impl<'a> Nonmatching<'a> {
                  sides the same vertices.",
                 contact.name
             );
-            let of_contact = |check: &&mut Check| !check.passed && check.decides() && check.name != "solution/supports";
+            let of_contact =
+                |check: &&mut Check| !check.passed && check.decides() && check.name != OfRun::Supports.name();
             for check in checks.iter_mut().filter(of_contact) {
                 *check = Check::not_made(&check.name, check.allowed, check.basis, why.as_str());
             }
@@ -132,7 +134,7 @@ impl<'a> Nonmatching<'a> {
         let (way, depth) = self.penetration(&contact.pairs);
         let depth = depth.max(0.0);
         let deepest = self.excesses(&contact.pairs).into_iter().flatten().fold(0.0, f64::max);
-        let name = format!("solution/contact/{}/penetration", contact.name);
+        let name = OfSolutionContact::Penetration.of(&contact.name);
         if let Some(law) = &self.laws[index] {
             let why = format!(
                 "The sides have different vertices, and contact holds {}: what of the contact forces does not follow this law, relative \
