@@ -47,7 +47,16 @@ impl Kind {
             "support" => Kind::Support,
             "load" | "loads" => Kind::Load,
             "body" | "bodies"
-                if ["/body_force", "/temperature", "/initial_stress"].iter().any(|end| name.ends_with(end)) =>
+                if [
+                    "/body_force",
+                    "/temperature",
+                    "/temperature_gradient",
+                    "/temperature_across",
+                    "/initial_stress",
+                    "/initial_stress_shear",
+                ]
+                .iter()
+                .any(|end| name.ends_with(end)) =>
             {
                 Kind::Load
             }
@@ -58,7 +67,9 @@ impl Kind {
             "points" => Kind::Moved,
             "precision" => Kind::Precision,
             "boundary" if name.ends_with("/forces") => Kind::Load,
-            "boundary" if name.ends_with("/clamped") => Kind::Support,
+            "boundary" => Kind::Support,
+            "temperature" => Kind::Load,
+            "revolution" => Kind::Element,
             _ => Kind::Local,
         }
     }
@@ -157,6 +168,10 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
             "The prescribed displacement is not that of the scene.",
             "Compare `displacement` of the support with what the model sets at the marked node.",
         ],
+        (Kind::Support, "held" | "springs") => [
+            "The model has a condition on this side that the scene does not have.",
+            "Add the support, the springs, the contact or the obstacle to the scene if it is meant, or take it out of the model.",
+        ],
         (Kind::Support, _) => [
             "The support is not in the system, or on other nodes.",
             "Look whether its boundary was found by name and its nodes collected, and whether a later step overwrites them.",
@@ -164,6 +179,10 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
         (Kind::Load, "lumped-edges" | "lumped-bodies" | "lumped-all") => [
             "The sum of the nodal forces is that of the load, and their distribution is not ∫P·φ.",
             "Integrate the load with the shape functions of the element: ends of a quadratic edge have 1/6, its middle has 2/3.",
+        ],
+        (Kind::Load, "mean") => [
+            "Thermal strains of a linear element are constant in it, as its displacements are linear: that program chooses them so.",
+            "Take elements of second order there, or give the temperature in steps that are constant on each body.",
         ],
         (Kind::Load, "forces") => [
             "Nodal forces along one boundary are not those of its load; all equations elsewhere are met.",
@@ -217,6 +236,14 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
         (Kind::Local, "equation") => [
             "One equation is not that of the scene: a force or a support acts at this node alone.",
             "Look for a point load, a constraint or an overwritten row at the marked node.",
+        ],
+        (Kind::Element, "hoop" | "plane-strain") => [
+            "The strain around the axis, u_r/r, is not in the stiffness.",
+            "Add its row to B, with the radius of each integration point.",
+        ],
+        (Kind::Element, "weight" | "weight-of-stiffness" | "weight-of-loads" | "weight-of-body-forces") => [
+            "Integrals over a body of revolution have the weight r, which is not in all of them.",
+            "Multiply the weight of every integration point by its radius, in the stiffness, in body forces and in tractions alike.",
         ],
         (Kind::Element, "reduced") => [
             "The equations are those of fewer points: a field may have motions that store no energy at these, seen as hourglass patterns.",

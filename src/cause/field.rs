@@ -3,7 +3,8 @@
 use super::advice::{self, Kind};
 use super::place::{self, Place};
 use super::{Cause, names, taken};
-use crate::compare::{Check, Comparison, Judged};
+use crate::compare::name::{OfContact, OfField, OfRun};
+use crate::compare::{Check, Comparison, Judged, Name};
 use crate::diagnose::{Diagnosis, Finding};
 use crate::problem::Problem;
 
@@ -46,7 +47,8 @@ pub fn causes(
         faults.push(fault(problem, judged, told, &own));
     }
     // What compares the best field with the stresses alone is its own fault where no other check is.
-    let of_contact = taken(failing, |check| check.name.starts_with("contact/") && check.difference.is_some());
+    let is_of_contact = |check: &Check| matches!(Name::read(&check.name), Name::Contact(..));
+    let of_contact = taken(failing, |check| is_of_contact(check) && check.difference.is_some());
     if let (Some(best), false) = (comparison.best.map(|b| &comparison.judged[b]), of_contact.is_empty()) {
         faults.push(fault(problem, best, &[], &of_contact));
     }
@@ -55,19 +57,19 @@ pub fn causes(
 
 /// True if a check asks about the field `who` alone.
 fn is_of(check: &Check, who: &str) -> bool {
-    check.name.strip_suffix(who).is_some_and(|rest| rest.ends_with('/'))
-        || check.name.starts_with(&format!("certified/{who}/"))
-        || check.name.starts_with("solution/")
+    let name = Name::read(&check.name);
+    name.field() == Some(who) || name.is_of_solution()
 }
 
 /// True if a check asks about the best field without naming it.
 fn is_of_best(check: &Check) -> bool {
-    check.name.starts_with("contact/") || (check.name.starts_with("energy/p") && check.name.contains("-above-p"))
+    matches!(Name::read(&check.name), Name::Contact(..) | Name::Order(..))
 }
 
 fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check]) -> Fault {
     let candidate = &judged.candidate;
-    let has = |start: &str| own.iter().find(|check| check.name.starts_with(start));
+    let find = |is: &dyn Fn(Name<'_>) -> bool| own.iter().find(|check| is(Name::read(&check.name)));
+    let has = |of: OfField| find(&|name| matches!(name, Name::Field(own, _) if own == of));
     let made = |kind, name: &str, what: String, place: Option<Place>| Fault {
         field: candidate.name.clone(),
         kind,
@@ -86,25 +88,25 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
         return fault;
     }
     let violation = judged.violation;
-    if has("admissible/").is_some() && violation.support >= violation.penetration.max(violation.at_vertices) {
+    if has(OfField::Admissible).is_some() && violation.support >= violation.penetration.max(violation.at_vertices) {
         let what = "supports do not have their prescribed displacements".to_string();
         return made(Kind::Support, "support", what, place::unbalanced(problem, judged));
     }
-    if has("admissible/").is_some()
+    if has(OfField::Admissible).is_some()
         && let Some((place, interface, depth)) = place::deepest(problem, candidate, None)
     {
         let contact = &problem.interfaces[interface].name;
         let what = format!("contact {contact} is penetrated by {depth:.2e}");
         return made(Kind::Contact, &format!("contact/{contact}/penetration"), what, Some(place));
     }
-    if has("primal/equilibrium/").or_else(|| has("solution/residual")).is_some() {
+    if has(OfField::Equilibrium).or_else(|| find(&|name| name == Name::Run(OfRun::Residual))).is_some() {
         let what = "stresses do not balance the loads".to_string();
         let cut = candidate.numbering.as_ref().is_some_and(|numbering| numbering.uncut);
         let untried = candidate.higher.is_some() && candidate.cells.is_empty() || cut;
         let name = if untried { "equilibrium/untried" } else { "equilibrium" };
         return made(Kind::Equilibrium, name, what, place::unbalanced(problem, judged));
     }
-    if let Some(check) = has("energy/recomputed/").or_else(|| has("energy/strain/")) {
+    if let Some(check) = has(OfField::Recomputed).or_else(|| has(OfField::Strain)) {
         let what = format!(
             "the energy reported, {}, is not that of its displacement, {}",
             super::told::number(check.value),
@@ -112,12 +114,15 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
         );
         return made(Kind::Reported, "reported-energy", what, None);
     }
-    let reactions = |check: &&&Check| {
-        let end = ["/reactions", "/resultant"].iter().any(|end| check.name.ends_with(end));
-        check.name.starts_with("primal/reactions/") || check.name.starts_with("contact/") && end
+    let of_forces = |name: Name<'_>| {
+        matches!(
+            name,
+            Name::Field(OfField::Reactions, _) | Name::Contact(OfContact::Reactions | OfContact::Resultant, _)
+        )
     };
-    if let Some(check) = own.iter().find(reactions) {
-        let named = problem.interfaces.iter().position(|i| check.name.starts_with(&format!("contact/{}/", i.name)));
+    if let Some(check) = find(&of_forces) {
+        let contact = Name::read(&check.name).contact();
+        let named = problem.interfaces.iter().position(|i| Some(i.name.as_str()) == contact);
         let interface = named.or((!problem.interfaces.is_empty()).then_some(0));
         let place = interface.and_then(|i| place::deepest(problem, candidate, Some(i))).map(|(place, ..)| place);
         let on = named.map_or(String::new(), |i| format!(" of contact {}", problem.interfaces[i].name));
@@ -125,12 +130,18 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
         return made(Kind::Reactions, "reported-reactions", what, place);
     }
     let first = own.first().map_or(String::new(), |check| super::told(check));
-    let all = |is: &dyn Fn(&str) -> bool| own.iter().all(|check| is(&check.name));
-    let (kind, name) = if all(&|name| name == "solution/guaranteed-error") {
+    let all = |is: &dyn Fn(Name<'_>) -> bool| own.iter().all(|check| is(Name::read(&check.name)));
+    let (kind, name) = if all(&|name| name == Name::Run(OfRun::GuaranteedError)) {
         (Kind::Coarse, "coarse")
-    } else if all(&|name| name == "solution/energy-identity") {
+    } else if all(&|name| name == Name::Run(OfRun::EnergyIdentity)) {
         (Kind::Work, "work")
-    } else if all(&|name| name.starts_with("quantity/") || name.starts_with("certified/")) {
+    } else if all(&|name| name == Name::Run(OfRun::SolutionReactions)) {
+        (Kind::Equilibrium, "equilibrium")
+    } else if all(&|name| name == Name::Run(OfRun::Supports)) {
+        (Kind::Support, "support")
+    } else if all(&|name| matches!(name, Name::SolutionContact(..))) {
+        (Kind::Contact, "contact")
+    } else if all(&|name| matches!(name, Name::Quantity(..) | Name::Field(OfField::EnergyError, _))) {
         (Kind::Value, "value")
     } else {
         (Kind::Bound, "bound")

@@ -13,7 +13,8 @@ mod told;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::compare::{Basis, Check, Comparison};
+use crate::compare::name::{FREE_BOUND, OfRun, WIDTH};
+use crate::compare::{Basis, Check, Comparison, Name};
 use crate::diagnose::Diagnosis;
 use crate::problem::Problem;
 pub use place::Place;
@@ -47,11 +48,11 @@ pub fn causes(
 ) -> Vec<Cause> {
     let mut failing: Vec<&Check> = comparison.checks.iter().filter(|c| !c.passed && c.decides()).collect();
     let mut causes = Vec::new();
-    let own = taken(&mut failing, |check| check.name == "dual/equilibrium" || check.name.ends_with("/free bound"));
+    let own = taken(&mut failing, |check| is_of_stresses(Name::read(&check.name)));
     causes.extend(of_stresses(problem, &own));
     let of_fields = causes.len();
     causes.extend(field::causes(problem, comparison, diagnosis, &mut failing));
-    let stored = taken(&mut failing, |check| check.name.starts_with("baseline/"));
+    let stored = taken(&mut failing, |check| matches!(Name::read(&check.name), Name::Baseline(_)));
     let mut missing = taken(&mut failing, |check| check.difference.is_none());
     with_causes(&mut causes[of_fields..], &mut missing);
     causes.extend(of_baseline(&stored));
@@ -60,13 +61,20 @@ pub fn causes(
     causes
 }
 
+/// True if no displacement field takes part in a check.
+fn is_of_stresses(name: Name<'_>) -> bool {
+    name == Name::Run(OfRun::DualEquilibrium) || name.field() == Some(FREE_BOUND)
+}
+
 /// Adds checks that could not be made to the causes of the failed checks on the same fields: the mistake in a field also
 /// prevents its other checks.
 fn with_causes(causes: &mut [Cause], missing: &mut Vec<&Check>) {
-    let model = |name: &str| name.rsplit('/').next().map(str::to_owned);
     missing.retain(|check| {
-        let same = |cause: &Cause| {
-            check.name.starts_with("contact/") || cause.checks.iter().any(|own| model(own) == model(&check.name))
+        let name = Name::read(&check.name);
+        let same = |cause: &Cause| match (name, name.field()) {
+            (Name::Contact(..), _) => true,
+            (_, None) => false,
+            (_, field) => cause.checks.iter().any(|own| Name::read(own).field() == field),
         };
         let cause = causes.iter_mut().find(|cause| same(cause));
         cause.map(|cause| cause.checks.push(check.name.clone())).is_none()
@@ -86,7 +94,7 @@ fn names(checks: &[&Check]) -> Vec<String> {
 
 /// The cause of failures that involve no displacement field.
 fn of_stresses(problem: &Problem, own: &[&Check]) -> Option<Cause> {
-    let first = own.iter().find(|check| check.name == "dual/equilibrium").or(own.first())?;
+    let first = own.iter().find(|check| check.name == OfRun::DualEquilibrium.name()).or(own.first())?;
     Some(Cause {
         name: "stresses".to_string(),
         sentence: format!("The stress solution of this program does not hold: {}", told(first)),
@@ -132,14 +140,15 @@ fn not_made(check: &Check) -> Cause {
 
 /// The cause of a failure that belongs to no other.
 fn alone(check: &Check, refinement: Option<&str>) -> Cause {
-    let is_tolerance = check.name.ends_with("/tolerance");
+    let name = Name::read(&check.name);
+    let is_tolerance = matches!(name, Name::Run(OfRun::Tolerance) | Name::Quantity(_, WIDTH));
     let [suggests, remedy] = match (check.basis, refinement.filter(|_| is_tolerance)) {
         (Basis::Asked, Some(remedy)) => ["What was asked for was not reached.", remedy],
         (Basis::Asked, None) => [
             "What was asked for was not reached; theory allows it.",
             "Refine further, with a larger --max-triangles or --max-seconds, or ask for less.",
         ],
-        _ if check.name.starts_with("quantity/") => advice::of(advice::Kind::Value, ""),
+        _ if matches!(name, Name::Quantity(..)) => advice::of(advice::Kind::Value, ""),
         _ => advice::ALONE,
     };
     Cause {

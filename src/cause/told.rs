@@ -1,6 +1,7 @@
 //! The outcome of a check in a sentence, with different wording for checks that passed, failed or were not made.
 
-use crate::compare::Check;
+use crate::compare::name::{OfContact, OfField, OfRun, OfSolutionContact, WIDTH};
+use crate::compare::{Check, Name};
 
 /// The outcome of a check: passed, failed or not made.
 pub fn outcome(check: &Check) -> &'static str {
@@ -29,127 +30,117 @@ pub(super) fn number(x: Option<f64>) -> String {
     }
 }
 
-/// Splits the name of a check into its family and the two parts of the rest; names of contacts, quantities and files may
-/// contain slashes.
-fn parts(name: &str) -> (&str, &str, &str) {
-    let (first, rest) = name.split_once('/').unwrap_or((name, ""));
-    let (rest, first) = match rest.strip_prefix("contact/").filter(|_| first == "solution") {
-        Some(rest) => (rest, "contact"),
-        None => (rest, first),
-    };
-    let by_end = matches!(first, "contact" | "quantity" | "certified");
-    let (middle, last) = if by_end { rest.rsplit_once('/') } else { rest.split_once('/') }.unwrap_or((rest, ""));
-    (first, middle, last)
-}
-
 fn failed(check: &Check) -> String {
     let [value, reference, difference] = [check.value, check.reference, check.difference].map(number);
     let allowed = number(Some(check.allowed));
-    let (first, middle, last) = parts(&check.name);
-    match (first, middle, last) {
-        ("admissible", who, _) => format!(
+    match Name::read(&check.name) {
+        Name::Field(OfField::Admissible, who) => format!(
             "{who} misses a support or penetrates a contact by {value} of its largest displacement; {allowed} would be round-off."
         ),
-        ("energy", "lower-below", who) => format!(
+        Name::Field(OfField::LowerBelow, who) => format!(
             "The lower bound {value} lies above the energy {reference} of {who} made admissible, by {difference}: one of the two is wrong."
         ),
-        ("energy", "coulomb", who) => format!(
+        Name::Field(OfField::Coulomb, who) => format!(
             "The energy {value} of {who} with Coulomb friction lies below {reference}, the lower bound without friction, by {difference}: one \
              of the two is wrong."
         ),
-        ("coulomb", who, _) => format!(
+        Name::Field(OfField::FrictionForce, who) => format!(
             "With limits from its own reactions {who} has the force of friction {reference}, and the stresses have {value}: a difference \
              of {difference} of what friction can carry; {allowed} was chosen as the most."
         ),
-        ("energy", "gap-two-ways", who) => format!(
+        Name::Field(OfField::GapTwoWays, who) => format!(
             "The gap to {who} is {value} from the two energies and {reference} integrated triangle by triangle; the two are not equal."
         ),
-        ("energy", "recomputed", who) => {
+        Name::Field(OfField::Recomputed, who) => {
             format!("{who} reports the energy {value}, and its displacement has {reference}.")
         }
-        ("energy", "strain", who) => {
+        Name::Field(OfField::Strain, who) => {
             format!("{who} reports the strain energy {value}, and its displacement has {reference}.")
         }
-        ("energy", "identity", who) => {
+        Name::Field(OfField::Identity, who) => {
             format!("The energy {value} of {who} is not minus its strain energy, {reference}: it is not the minimum.")
         }
-        ("energy", order, _) if order.contains("-above-") => {
-            let [low, high] = order.split_once("-above-").map_or(["", ""], |(p, q)| [p, q]).map(str::to_uppercase);
+        Name::Order(low, high) => {
+            let [low, high] = [low, high].map(str::to_uppercase);
             format!("The energy {value} of {high} lies above that of {low}, {reference}, which {high} can represent.")
         }
-        ("primal", "equilibrium", who) => {
+        Name::Field(OfField::Equilibrium, who) => {
             format!("{value} of the nodal forces of {who} is left unbalanced, where a solver leaves {allowed}.")
         }
-        ("primal", "reactions", who) => format!(
+        Name::Field(OfField::Reactions, who) => format!(
             "A contact reaction that {who} reports is off by {value} from the one its stresses ask for; {allowed} would be round-off."
         ),
-        ("stress", "difference", who) => format!(
+        Name::Field(OfField::StressDifference, who) => format!(
             "The stresses of {who} are {value} from those in equilibrium, and the two energies leave no more than {allowed}."
         ),
-        ("dual", "equilibrium", _) => {
+        Name::Run(OfRun::DualEquilibrium) => {
             format!("The stresses miss equilibrium by {value} of the applied load, where {allowed} is round-off.")
         }
-        ("contact", name, "reactions") => {
+        Name::Contact(OfContact::Reactions, name) => {
             format!(
                 "A reaction on {name} is off by {value} from the one that stresses ask for; {allowed} would be round-off."
             )
         }
-        ("contact", name, "resultant") => format!(
+        Name::Contact(OfContact::Resultant, name) => format!(
             "The force on {name} is {value} in stresses and {reference} in displacements: {difference} apart, {allowed} at most."
         ),
-        ("contact", name, "pressure-l2") => {
+        Name::Contact(OfContact::PressureL2, name) => {
             format!("The pressures on {name} are {value} apart, relative to the dual one; {allowed} at most.")
         }
-        ("contact", name, "pressure-max") => format!(
+        Name::Contact(OfContact::PressureMax, name) => format!(
             "The largest pressure on {name} is {value} in stresses and {reference} in displacements: {difference} apart, {allowed} at most."
         ),
         // Its reason names the places.
-        ("contact", name, "peak-pressure") => {
+        Name::Contact(OfContact::PeakPressure, name) => {
             format!("On {name} the largest pressures differ by a factor of {difference}. {}", check.why)
         }
-        ("contact", name, "open-length") => format!(
+        Name::Contact(OfContact::OpenLength, name) => format!(
             "The models disagree on {difference} of the length of {name} whether it is open; {allowed} at most."
         ),
-        ("bracket", "sharpness" | "tolerance", _) => {
+        Name::Run(OfRun::Sharpness | OfRun::Tolerance) => {
             format!("The guaranteed relative error is {value}, and {allowed} was to be reached.")
         }
-        ("certified", who, _) => format!("The stresses of {who} may be wrong by {value}; {allowed} at most."),
-        ("solution", "guaranteed-error", _) => {
+        Name::Field(OfField::EnergyError, who) => {
+            format!("The stresses of {who} may be wrong by {value}; {allowed} at most.")
+        }
+        Name::Run(OfRun::GuaranteedError) => {
             format!(
                 "All stresses of the field may be wrong: its guaranteed relative error is {value}, above {allowed}."
             )
         }
-        ("solution", "residual", _) => {
+        Name::Run(OfRun::Residual) => {
             format!("{value} of the nodal forces is left unbalanced, where a solution leaves {allowed}.")
         }
-        ("solution", "supports", _) => {
+        Name::Run(OfRun::Supports) => {
             format!("Prescribed displacements are missed by {value} of the largest displacement; {allowed} at most.")
         }
-        ("solution", "reactions", _) => {
+        Name::Run(OfRun::SolutionReactions) => {
             format!("Forces of supports and contacts miss the loads by {value}; {allowed} at most.")
         }
-        ("solution", "energy-identity", _) => {
+        Name::Run(OfRun::EnergyIdentity) => {
             format!("Twice the strain energy is {value} and the work done is {reference}; they are not equal.")
         }
-        ("contact", name, "penetration") => {
+        Name::SolutionContact(OfSolutionContact::Penetration, name) => {
             format!("A node of {name} penetrates by {value} of the largest displacement; {allowed} at most.")
         }
-        ("contact", name, "penetration-at-nodes") => {
+        Name::SolutionContact(OfSolutionContact::PenetrationAtNodes, name) => {
             format!("A node of {name}, which holds in the mean, penetrates by {value} of the largest displacement.")
         }
-        ("contact", name, "friction") => {
+        Name::SolutionContact(OfSolutionContact::Friction, name) => {
             format!("Along {name} friction misses its law by {value} of all forces; {allowed} at most.")
         }
-        ("contact", name, "pulling") => format!("Contact {name} pulls with {value} of all forces; {allowed} at most."),
-        ("contact", name, "pressure-where-open") => {
+        Name::SolutionContact(OfSolutionContact::Pulling, name) => {
+            format!("Contact {name} pulls with {value} of all forces; {allowed} at most.")
+        }
+        Name::SolutionContact(OfSolutionContact::PressureWhereOpen, name) => {
             format!("Contact {name} pushes with {value} of all forces where it is open; {allowed} at most.")
         }
-        ("quantity", name, "tolerance") => {
+        Name::Quantity(name, WIDTH) => {
             format!(
                 "The half-width of the interval of {name} is {value} of its value, and {allowed} was to be reached."
             )
         }
-        ("quantity", name, source) => {
+        Name::Quantity(name, source) => {
             let own = if check.allowed > 0.0 {
                 format!(", and its own error and rounding explain {allowed} at most")
             } else {
@@ -159,11 +150,10 @@ fn failed(check: &Check) -> String {
                 "The value {value} of {name} ({source}) is {difference} beyond the end {reference} of its interval{own}."
             )
         }
-        ("baseline", ..) => {
-            let what = check.name.strip_prefix("baseline/").unwrap_or(&check.name);
+        Name::Baseline(what) => {
             format!("{what} is {value} and was {reference}: {difference} apart, {allowed} at most.")
         }
-        _ => format!("{}: {value} against {reference}, {difference} apart, {allowed} at most.", check.name),
+        Name::Other => format!("{}: {value} against {reference}, {difference} apart, {allowed} at most.", check.name),
     }
 }
 

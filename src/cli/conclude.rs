@@ -7,6 +7,7 @@ use super::words::{ci, say};
 use super::{CliError, Exit};
 use crate::cause::{outcome, told};
 use crate::compare::Comparison;
+use crate::compare::name::{Name, OfSolutionContact};
 use crate::diagnose::{Diagnosis, Finding};
 use crate::problem::Note;
 use crate::report::{self, BaselineRow, Dossier, Report, Status};
@@ -174,7 +175,9 @@ pub fn lines(report: &Report) -> Vec<String> {
     }
     for remark in report.remarks.iter().filter(|c| !c.passed) {
         // What a method does by design is said on the spot.
-        let by_design = remark.name.ends_with("/penetration-at-nodes") && !remark.why.is_empty();
+        let by_design =
+            matches!(Name::read(&remark.name), Name::SolutionContact(OfSolutionContact::PenetrationAtNodes, _))
+                && !remark.why.is_empty();
         let why = if by_design { remark.why.clone() } else { told(remark) };
         lines.push(format!("  worth a look: {}: {why}", remark.name));
     }

@@ -12,6 +12,7 @@ use super::words::ci;
 use super::words::progress::Progress;
 use super::{CliError, Exit, program};
 use crate::budget::Budget;
+use crate::compare::name::OfRun;
 use crate::compare::{Allowances, BLUNT, Comparison, SHARP};
 use crate::dual::{DualError, DualMethod, Options, Petsc, Size};
 use crate::element::{Elements, block};
@@ -334,7 +335,7 @@ impl Session {
         limits: &Limits,
         allow: &Allowances,
     ) -> Result<(Option<Sharpened>, f64), CliError> {
-        let asked = allow.given("bracket/sharpness");
+        let asked = allow.given(OfRun::Sharpness.name());
         // Where a field was handed in, refining the stresses is all that a tolerance can ask for, for as long as it takes.
         let wanted = solve.tolerance.filter(|_| self.command == "certify");
         let (aim, enough) = (wanted.or(asked).unwrap_or(SHARP), asked.unwrap_or(BLUNT));

@@ -162,7 +162,7 @@ impl Allowance {
             return check;
         }
         let allowed = made(self.exact + self.ceiling).allowed;
-        Check::not_made(&check.name, allowed, check.basis, format!("{} {}", check.why, told()))
+        Check::not_made(&check.name, allowed, check.basis, format!("{} {}", told(), check.why))
     }
 
     /// As [`Self::check`], with displacements that are too large as the reason.

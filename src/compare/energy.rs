@@ -3,8 +3,9 @@
 use super::balance::Balance;
 use super::candidate::{ADMISSIBLE, Candidate, Judged};
 use super::ceiling::{Allowance, Ceilings, MISTAKE, PART};
+use super::name::{FREE_BOUND, Name, OfField, OfRun, of_order};
 use super::solution::{Site, Sites};
-use super::tolerance::{chosen, name_of_order};
+use super::tolerance::chosen;
 use super::{Basis, Check};
 use crate::bounds::energy::initial_work;
 use crate::bounds::{Bracket, UpperBound, Violation, holds, work_of_remainders};
@@ -27,9 +28,8 @@ pub fn dual_checks(
     best_upper: f64,
 ) -> Vec<Check> {
     let mut checks = vec![sharpness(bracket, best_upper)];
-    let name = "dual/equilibrium";
     checks.push(Check::at_most(
-        name,
+        OfRun::DualEquilibrium.name(),
         dual.equilibrium.residual(),
         0.0,
         dual.accuracy,
@@ -39,11 +39,11 @@ pub fn dual_checks(
     ));
     match &bracket.free {
         Ok(free) => {
-            checks.push(order("free bound", bracket, free.upper()));
-            checks.push(two_ways(problem, scales, (dual, bracket), "free bound", free));
+            checks.push(order(FREE_BOUND, bracket, free.upper()));
+            checks.push(two_ways(problem, scales, (dual, bracket), FREE_BOUND, free));
         }
         Err(reason) => checks.push(Check::not_made(
-            "energy/lower-below/free bound",
+            &OfField::LowerBelow.of(FREE_BOUND),
             0.0,
             Basis::Guaranteed,
             format!("No admissible displacement could be built from the dual solution: {reason}."),
@@ -64,7 +64,7 @@ pub fn primal_checks(
     let (strain, scale) = (bracket.complementary.stored(), bracket.complementary.stored().max(own.magnitude));
     let rounding = energy_rounding(scales, judged);
     let mut checks = Vec::new();
-    let name = format!("admissible/{who}");
+    let name = OfField::Admissible.of(who);
     let Violation { support, penetration, at_vertices } = judged.violation;
     // Where the direction of contact turns or the gap is a curve, the minimiser of P1 bounds the jump at vertices alone.
     let at_vertices_alone = linear_where_jumps_bend(problem, judged);
@@ -86,8 +86,8 @@ pub fn primal_checks(
     let admissible = &judged.admissible;
     checks.push(two_ways(problem, scales, (dual, bracket), who, admissible));
     let claims = [
-        ("recomputed", judged.candidate.reported, own.total()),
-        ("strain", judged.candidate.reported_strain, own.stored()),
+        (OfField::Recomputed, judged.candidate.reported, own.total()),
+        (OfField::Strain, judged.candidate.reported_strain, own.stored()),
     ];
     for (what, reported, found) in claims {
         let Some(reported) = reported else { continue };
@@ -95,12 +95,12 @@ pub fn primal_checks(
             "The energy that the displacement program reports against the energy of its field, integrated here. {}",
             lost_digits(rounding, IDENTITY * scale)
         );
-        let name = format!("energy/{what}/{who}");
+        let name = what.of(who);
         let equal = |allowed| Check::equal(&name, reported, found, allowed, Basis::RoundOff, why.as_str());
         checks.push(of_energy(ceilings, IDENTITY * strain, IDENTITY * scale + rounding).check_of_large(equal));
     }
     if !judged.candidate.is_solution {
-        let name = format!("certified/{who}/energy-error");
+        let name = OfField::EnergyError.of(who);
         checks.push(Check::at_most(
             &name,
             judged.relative_error(bracket),
@@ -112,7 +112,7 @@ pub fn primal_checks(
         ));
     }
     if judged.candidate.is_solution && problem.is_cone() && has_identity(problem, judged) {
-        let name = format!("energy/identity/{who}");
+        let name = OfField::Identity.of(who);
         let initial = initial_work(problem, &judged.field.displacement);
         let why = if initial == 0.0 {
             "With zero gap and zero prescribed displacement the admissible set is a cone, and its minimiser satisfies \
@@ -129,7 +129,7 @@ pub fn primal_checks(
         checks.extend(judged.candidate.reactions.as_ref().map(|_| reactions(who, (scales, ceilings), balance)));
     }
     let gap = (admissible.upper() - bracket.lower()).max(0.0);
-    let name = format!("stress/difference/{who}");
+    let name = OfField::StressDifference.of(who);
     let difference: f64 = admissible.local.triangles.iter().sum();
     let why = "‖λ_h − σ(u_h)‖ in the energy norm: two fields that enclose the same energy cannot be further apart than \
          √(2·gap).";
@@ -138,9 +138,11 @@ pub fn primal_checks(
     let slack = [strain, scale].map(|scale| IDENTITY * scale + scales.round_off.energy);
     checks.push(of_energy(ceilings, slack[0], slack[1]).check_of_large(differs));
     if !judged.candidate.is_polynomial() {
-        let of_another = ["energy/lower-below/", "energy/gap-two-ways/", "stress/difference/"];
-        let meant = checks.iter_mut().filter(|check| of_another.iter().any(|start| check.name.starts_with(start)));
-        meant.for_each(|check| {
+        use OfField::{GapTwoWays, LowerBelow, StressDifference};
+        let of_another = |check: &&mut Check| {
+            matches!(Name::read(&check.name), Name::Field(LowerBelow | GapTwoWays | StressDifference, _))
+        };
+        checks.iter_mut().filter(of_another).for_each(|check| {
             check.why.push_str(" Of the polynomials on triangles that have the values of this field.")
         });
     }
@@ -208,7 +210,7 @@ pub fn degree_order(
         let why = format!(
             "Every admissible {letter}{p} field is an admissible {letter}{q} field, so the {letter}{q} minimum cannot be higher."
         );
-        let name = name_of_order(letter, p, q);
+        let name = of_order(letter, p, q);
         let ordered = |allowed| Check::at_most(&name, lower, upper, allowed, Basis::RoundOff, why.as_str());
         of_energy(ceilings, SOLVER * strain, SOLVER * strain.max(magnitude) + rounding).check_of_large(ordered)
     };
@@ -226,7 +228,7 @@ pub fn degree_order(
 /// Check that a bracket is narrow enough to tell two models apart.
 pub fn sharpness(bracket: &Bracket, best_upper: f64) -> Check {
     Check::at_most(
-        "bracket/sharpness",
+        OfRun::Sharpness.name(),
         bracket.relative_error(best_upper),
         0.0,
         chosen("sharpness"),
@@ -237,7 +239,13 @@ pub fn sharpness(bracket: &Bracket, best_upper: f64) -> Check {
 
 /// Check of −Π(λ_h) ≤ 𝓛(v).
 pub fn order(who: &str, bracket: &Bracket, upper: f64) -> Check {
-    let name = format!("energy/lower-below/{who}");
+    let name = OfField::LowerBelow.of(who);
+    if !upper.is_finite() {
+        let why = format!(
+            "The energy of {who} is no finite number: its displacement is too large for numbers in double precision."
+        );
+        return Check::not_made(&name, 0.0, Basis::Guaranteed, why);
+    }
     Check::at_most(
         &name,
         bracket.lower(),
@@ -256,7 +264,7 @@ fn two_ways(
     who: &str,
     upper: &UpperBound,
 ) -> Check {
-    let name = format!("energy/gap-two-ways/{who}");
+    let name = OfField::GapTwoWays.of(who);
     let scale = bracket.complementary.stored().max(upper.potential.magnitude);
     let gap = upper.potential.total() - bracket.complementary.lower();
     let mut allowed = IDENTITY * scale + bracket.lower_widening + upper.widening + scales.round_off.energy;
@@ -283,7 +291,7 @@ fn in_its_own_space(who: &str, (scales, ceilings): (&Scales, &Ceilings), balance
     let scale = balance.scale.max(none);
     let relative = |left: f64| if scale > 0.0 { left / scale } else { left };
     let place = balance.worst.map_or(String::new(), |([x, y], _)| format!(" Most is left at ({x:.6}, {y:.6})."));
-    let name = format!("primal/equilibrium/{who}");
+    let name = OfField::Equilibrium.of(who);
     let why = format!(
         "A displacement solution balances the loads on every basis function of its space, with supports and with \
          contacts that push where they are closed: what is left of the nodal forces, integrated here, relative to \
@@ -301,7 +309,7 @@ fn reactions(who: &str, (scales, ceilings): (&Scales, &Ceilings), balance: &Bala
     let allowed = |i: usize| SOLVER * balance.carried[i] + balance.reaction_tolerance(i) + scales.round_off.force;
     let excess = |i: usize| balance.reactions[i] - allowed(i);
     let worst = (0..balance.reactions.len()).max_by(|&i, &j| excess(i).total_cmp(&excess(j)));
-    let name = format!("primal/reactions/{who}");
+    let name = OfField::Reactions.of(who);
     let value = worst.map_or(0.0, |i| balance.reactions[i]);
     let all = worst.map_or(0.0, allowed);
     let exact = all.min(SOLVER * ceilings.force + scales.round_off.force);

@@ -7,6 +7,7 @@ mod check;
 pub mod contact;
 mod energy;
 pub mod forces;
+pub mod name;
 mod on_quadrilaterals;
 mod outcome;
 mod revolved;
@@ -22,13 +23,15 @@ pub use contact::friction::{BoundDistance, FrictionState, FrictionSummary, Frict
 pub use contact::mean::MeanPressure;
 pub use contact::pressure::weighted_reactions;
 pub use forces::NodalForces;
+pub use name::{Name, names_of_checks};
 pub use on_quadrilaterals::QuadrilateralSolution;
 pub use outcome::{ComponentDifference, ContactSummary, Profile, StressSummary, TwoSides};
 pub use solution::{Nonmatching, Numbering, Solution};
 pub use stress::{primal_means, von_mises_map, von_mises_of, von_mises_of_field, von_mises_of_means};
-pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, chosen, names_of_checks};
+pub use tolerance::{Allowances, BLUNT, CHOSEN, SHARP, chosen};
 
 use ceiling::Ceilings;
+use name::OfField;
 
 use crate::bounds::{Bracket, UpperBound};
 use crate::dual::DualSolution;
@@ -99,7 +102,7 @@ pub fn compare(
         match Judged::new(soft, dual, candidate, ceilings.extent) {
             Ok(j) => judged.push(j),
             Err(reason) => refused.push(Check::not_made(
-                &format!("admissible/{name}"),
+                &OfField::Admissible.of(&name),
                 ADMISSIBLE,
                 Basis::RoundOff,
                 format!("No admissible displacement is near this field: {reason}."),

@@ -28,66 +28,6 @@ pub fn chosen(last: &str) -> f64 {
     CHOSEN.iter().find(|(key, ..)| *key == last).map_or(0.0, |row| row.1)
 }
 
-/// The names of all checks that a comparison can make; {field} stands for a displacement field, {contact} for a contact.
-const NAMES: [&str; 31] = [
-    "bracket/sharpness",
-    "bracket/tolerance",
-    "dual/equilibrium",
-    "admissible/{field}",
-    "certified/{field}/energy-error",
-    "coulomb/{field}/friction-force",
-    "energy/coulomb/{field}",
-    "energy/gap-two-ways/{field}",
-    "energy/identity/{field}",
-    "energy/lower-below/{field}",
-    "energy/recomputed/{field}",
-    "energy/strain/{field}",
-    "primal/equilibrium/{field}",
-    "primal/reactions/{field}",
-    "stress/difference/{field}",
-    "contact/{contact}/open-length",
-    "contact/{contact}/peak-pressure",
-    "contact/{contact}/pressure-l2",
-    "contact/{contact}/pressure-max",
-    "contact/{contact}/reactions",
-    "contact/{contact}/resultant",
-    "solution/guaranteed-error",
-    "solution/residual",
-    "solution/supports",
-    "solution/reactions",
-    "solution/energy-identity",
-    "solution/contact/{contact}/penetration",
-    "solution/contact/{contact}/penetration-at-nodes",
-    "solution/contact/{contact}/pulling",
-    "solution/contact/{contact}/pressure-where-open",
-    "solution/contact/{contact}/friction",
-];
-
-/// The names of the checks that a comparison of displacement `fields` in a scene with these `contacts` can make. Those that end
-/// with their degree, as `FEniCSx P2` and `FEniCSx Q2` do, are also compared with each other.
-pub fn names_of_checks(contacts: &[String], fields: &[String]) -> Vec<String> {
-    let with = |template: &str, key: &str, values: &[String]| -> Vec<String> {
-        values.iter().map(|value| template.replace(key, value)).collect()
-    };
-    let all = NAMES.iter().flat_map(|name| match *name {
-        name if name.contains("{field}") => with(name, "{field}", fields),
-        name if name.contains("{contact}") => with(name, "{contact}", contacts),
-        name => vec![name.to_string()],
-    });
-    let orders = ['P', 'Q'].into_iter().flat_map(|letter| {
-        let degree = |field: &String| field.rsplit_once(&format!(" {letter}")).and_then(|(_, k)| k.parse().ok());
-        let degrees: Vec<usize> = fields.iter().filter_map(degree).collect();
-        degrees.windows(2).map(|pair| name_of_order(letter, pair[0], pair[1])).collect::<Vec<String>>()
-    });
-    all.chain(orders).collect()
-}
-
-/// The name of the check that compares the energies of two displacement solutions of degrees p < q, both P or both Q.
-pub fn name_of_order(letter: char, p: usize, q: usize) -> String {
-    let letter = letter.to_ascii_lowercase();
-    format!("energy/{letter}{p}-above-{letter}{q}")
-}
-
 /// Allowed values from the command line, by check name.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Allowances {

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::Report;
 use super::text::number::{digits_to_tell, outward, significant};
+use crate::compare::name::{GIVEN, of_quantity};
 use crate::quantity::outside;
 
 /// Ends that are closer than this, relative to their size, differ by rounding.
@@ -136,7 +137,7 @@ impl QuantitySummary {
     /// field.
     pub(crate) fn held(&self, report: &Report) -> Vec<Held> {
         let checks = |last: &str| {
-            let name = format!("quantity/{}/{last}", self.name);
+            let name = of_quantity(&self.name, last);
             report.checks.iter().filter(move |check| check.name == name)
         };
         let of_model = |model: &QuantityOfModel| Held {
@@ -146,8 +147,8 @@ impl QuantitySummary {
             reason: model.reason.clone(),
             allowed: checks(&model.solver).next().map(|check| check.passed),
         };
-        let given = checks("given").map(|check| Held {
-            of: "given".to_string(),
+        let given = checks(GIVEN).map(|check| Held {
+            of: GIVEN.to_string(),
             degree: None,
             value: check.value,
             reason: None,
@@ -167,6 +168,7 @@ impl QuantitySummary {
             return String::new();
         }
         let own = match &held.reason {
+            _ if held.allowed == Some(true) && held.of == GIVEN => ", which its last digit explains".to_string(),
             _ if held.allowed == Some(true) => ", which its own error may explain".to_string(),
             Some(reason) => format!("; {reason}"),
             None => String::new(),

@@ -3,6 +3,7 @@
 use crate::bounds::{Bracket, NoUpperBound, lifted_within, potential};
 use crate::compare::forces::cells;
 use crate::compare::forces::turned::Kind;
+use crate::compare::name::{Name, OfRun, OfSolutionContact};
 use crate::compare::{
     ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution,
 };
@@ -48,7 +49,9 @@ pub fn claim(
         .any(|c| (!c.passed && c.decides() && c.value.is_some()) || c.excused)
         .then(|| explained(&own, judged, &solution, bracket));
     let notes = weak_notes(&solution, || energies(problem, judged));
-    let at_nodes = checks.iter_mut().filter(|check| check.name.ends_with("/penetration-at-nodes"));
+    let at_nodes = checks.iter_mut().filter(|check| {
+        matches!(Name::read(&check.name), Name::SolutionContact(OfSolutionContact::PenetrationAtNodes, _))
+    });
     at_nodes.zip(&notes).for_each(|(check, note)| check.why.clone_from(&note.text));
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), notes, checks })
 }
@@ -56,7 +59,7 @@ pub fn claim(
 /// A claim that is held against nothing, for this reason.
 fn not_held(problem: &Problem, why: &str) -> Claim {
     Claim {
-        checks: vec![Check::not_made("solution/residual", ADMISSIBLE, Basis::Claimed, why.to_string())],
+        checks: vec![Check::not_made(OfRun::Residual.name(), ADMISSIBLE, Basis::Claimed, why.to_string())],
         diagnosis: None,
         residual: vec![0.0; problem.mesh.triangles.len()],
         notes: Vec::new(),
@@ -160,7 +163,7 @@ fn explained(problem: &Problem, judged: &Judged, solution: &Solution<'_>, bracke
 /// Checks with the sharpest `bracket` of a run that a field may be called a solution at all: its guaranteed error is at most 100 %.
 pub fn error_check(judged: &Judged, bracket: &Bracket, allow: &Allowances) -> Check {
     let mut checks = [Check::at_most(
-        "solution/guaranteed-error",
+        OfRun::GuaranteedError.name(),
         judged.relative_error(bracket),
         0.0,
         NO_SOLUTION,
@@ -179,7 +182,7 @@ pub fn diagnoses(problem: &Problem, comparison: &Comparison, bracket: &Bracket) 
     let problem = &*problem.softened();
     let wrong = |judged: &&Judged| {
         let name = &judged.candidate.name;
-        let own = |check: &&Check| check.name.ends_with(name.as_str());
+        let own = |check: &&Check| Name::read(&check.name).field() == Some(name);
         let failed = comparison.checks.iter().filter(own).any(|check| !check.passed && check.decides());
         failed && judged.candidate.is_solution && judged.candidate.higher.is_none()
     };

@@ -4,6 +4,7 @@ use super::Certified;
 use super::adaptive::Wanted;
 use super::answers::Answer;
 use crate::bounds::Bracket;
+use crate::compare::name::{GIVEN, WIDTH, of_quantity};
 use crate::compare::{Allowances, Basis, Check, Comparison, Judged, weighted_reactions};
 use crate::problem::{Problem, Scales};
 use crate::quantity::{Form, Interval};
@@ -19,6 +20,9 @@ const SOLVED: f64 = 1e-8;
 /// A half-width beyond this part of the value tells no value.
 const NO_VALUE: f64 = 1.0;
 
+/// Half of a unit of the last digit of a value may be this part of what its interval holds; digits that are fewer tell no right value.
+const LAST_DIGIT: f64 = 0.005;
+
 /// Of the size of a quantity that the data can cause, the part that is not zero.
 const PART_OF_ALL: f64 = 0.1;
 
@@ -29,6 +33,23 @@ pub struct GivenValue {
     pub name: String,
     /// The value.
     pub value: f64,
+    /// Half of a unit of its last digit.
+    pub rounding: f64,
+}
+
+impl GivenValue {
+    /// A value as it was written, `text`.
+    pub fn written(name: String, value: f64, text: &str) -> Self {
+        let (digits, exponent) = text.trim().split_once(['e', 'E']).unwrap_or((text.trim(), "0"));
+        let decimals = digits.split_once('.').map_or(0, |(_, behind)| behind.len()) as i32;
+        let unit = 10.0_f64.powi(exponent.parse::<i32>().unwrap_or(0).saturating_sub(decimals));
+        GivenValue { name, value, rounding: 0.5 * unit }
+    }
+
+    /// A value with the digits that it needs.
+    pub fn new(name: String, value: f64) -> Self {
+        Self::written(name, value, &value.to_string())
+    }
 }
 
 /// The rows of the report: every answer with the values of the displacement models that were `compared`.
@@ -144,7 +165,7 @@ pub fn quantity_checks(
             }
             let whose = format!("{field} may miss it by what its own energy leaves open");
             let allowed = own + SOLVED * answer.kind.size(&certified.problem, &scales.data);
-            checks.push(inside(&format!("quantity/{}/{field}", answer.name), answer, value, allowed, &whose));
+            checks.push(inside(&of_quantity(&answer.name, field), answer, value, allowed, &whose));
         }
     }
     allow.apply(&mut checks);
@@ -172,16 +193,36 @@ fn of_no_use(answer: &Answer, most: f64) -> Option<String> {
     })
 }
 
+/// Why a value is not judged that lies outside its interval by less than its last digit.
+fn of_few_digits(answer: &Answer, given: &GivenValue) -> String {
+    let [lower, upper] = answer.interval.ends.map(|end| significant(end, 9));
+    format!(
+        "The exact {} '{}' lies between {lower} and {upper}, and {} may be it with fewer digits: give it with all that it has.",
+        answer.kind.name(),
+        answer.name,
+        given.value
+    )
+}
+
 /// One check for every value that was given. Outside an interval for another scene than the one that is written it is not judged.
 pub fn value_checks(certified: &Certified, answers: &[Answer], given: &[GivenValue], allow: &Allowances) -> Vec<Check> {
     let scales = Scales::new(&certified.problem);
     let check = |given: &GivenValue| {
-        let name = format!("quantity/{}/given", given.name);
+        let name = of_quantity(&given.name, GIVEN);
         match answers.iter().find(|answer| answer.name == given.name) {
             Some(answer) if answer.interval.has_an_end() => {
-                let check = inside(&name, answer, given.value, 0.0, "no correct value lies outside");
+                let [lower, upper] = answer.interval.ends;
+                let outside = answer.interval.outside(given.value);
+                let has_digits = given.rounding <= LAST_DIGIT * lower.abs().max(upper.abs());
+                let check = match outside > 0.0 && outside <= given.rounding && has_digits {
+                    true => {
+                        inside(&name, answer, given.value, given.rounding, "the value is rounded to its last digit")
+                    }
+                    false => inside(&name, answer, given.value, 0.0, "no correct value lies outside"),
+                };
                 let untold = match check.passed {
                     true => of_no_use(answer, answer.kind.size(&certified.problem, &scales.data)),
+                    false if outside <= given.rounding => Some(of_few_digits(answer, given)),
                     false => of_another_scene(certified),
                 };
                 untold.map_or(check, |why| Check::not_made(&name, 0.0, Basis::Guaranteed, why))
@@ -201,7 +242,7 @@ pub fn value_checks(certified: &Certified, answers: &[Answer], given: &[GivenVal
 /// One check for every quantity that was to be known more closely.
 pub fn wanted_checks(certified: &Certified, answers: &[Answer], wanted: &[Wanted], allow: &Allowances) -> Vec<Check> {
     let check = |wanted: &Wanted| {
-        let name = format!("quantity/{}/tolerance", wanted.name);
+        let name = of_quantity(&wanted.name, WIDTH);
         if let Some(why) = of_another_scene(certified) {
             return Check::not_made(&name, wanted.tolerance, Basis::Asked, why);
         }

@@ -13,6 +13,7 @@ use crate::cli::given::revolved::{Claims, refuse_claims};
 use crate::cli::given::values::ValueOptions;
 use crate::cli::session::{DualRun, Session, refuse_unknown};
 use crate::cli::{CliError, Exit};
+use crate::compare::name::OfField;
 use crate::compare::{Basis, Candidate, Comparison, compare};
 use crate::problem::{Note, Problem};
 use crate::process::limit;
@@ -176,14 +177,14 @@ fn held(
         };
         let claim = claim.map_err(|e| CliError::stopped(Exit::BadInput, e.to_string(), ""))?;
         // Supports and penetration have checks of their own, with the accuracy of a solver and their place.
-        let admissible = format!("admissible/{}", judged.candidate.name);
+        let admissible = OfField::Admissible.of(&judged.candidate.name);
         comparison.checks.retain(|check| check.name != admissible);
         comparison.checks.extend(claim.checks.iter().cloned());
         claimed = Some(claim);
     }
     let mut in_the_mean = Vec::new();
     if let (true, false, Some(judged)) = (args.contact.is_some(), args.solution, comparison.judged.first()) {
-        let admissible = format!("admissible/{}", judged.candidate.name);
+        let admissible = OfField::Admissible.of(&judged.candidate.name);
         let notes = study::weak_contact(&certified.problem, judged);
         let check = comparison.checks.iter_mut().find(|check| check.name == admissible);
         if let (Some(notes), Some(check)) = (notes, check.filter(|check| allow.given(&check.name).is_none())) {

@@ -4,6 +4,7 @@ use super::options::{JudgeOptions, SignatureOptions};
 use crate::cli::commands::job::JobOptions;
 use crate::cli::words::say;
 use crate::cli::{CliError, Exit};
+use crate::compare::name::{FREE_BOUND, GIVEN, WIDTH, of_quantity};
 use crate::compare::{Allowances, Check, Comparison, names_of_checks};
 use crate::report::BaselineRow;
 use crate::scene::{Contact, Scene};
@@ -45,11 +46,11 @@ impl JudgeOptions {
     pub fn refuse_foreign(&self, scenes: &[(Scene, Vec<String>)]) -> Result<(), CliError> {
         let of_scene = |(scene, fields): &(Scene, Vec<String>)| {
             let contacts: Vec<String> = scene.contacts.iter().map(Contact::name).collect();
-            let fields: Vec<String> = fields.iter().cloned().chain(["free bound".to_string()]).collect();
+            let fields: Vec<String> = fields.iter().cloned().chain([FREE_BOUND.to_string()]).collect();
             let mut names = names_of_checks(&contacts, &fields);
             for quantity in &scene.quantities {
-                let of = |last: &str| format!("quantity/{}/{last}", quantity.name);
-                names.extend(fields.iter().map(String::as_str).chain(["tolerance", "given"]).map(of));
+                let of = |by: &str| of_quantity(&quantity.name, by);
+                names.extend(fields.iter().map(String::as_str).chain([WIDTH, GIVEN]).map(of));
             }
             names
         };

@@ -273,7 +273,8 @@ impl FromStr for GivenValue {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, value) = named(text, "tip=0.8014")?;
-        Ok(GivenValue { name, value })
+        let written = text.split_once('=').map_or("", |(_, written)| written);
+        Ok(GivenValue::written(name, value, written))
     }
 }
 

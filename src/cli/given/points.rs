@@ -13,6 +13,8 @@ pub struct Row {
     at: Option<[f64; 2]>,
     quantity: Option<String>,
     value: f64,
+    /// The value as it is written.
+    written: String,
 }
 
 /// Names that the columns may have.
@@ -76,12 +78,17 @@ pub fn read(text: &str) -> Result<Vec<Row>, String> {
             _ => return Err(format!("line {line_number}: one of x and y is missing")),
         };
         let [name, body, quantity] = ["name", "body", "quantity"].map(|name| cell(name).map(str::to_string));
-        Ok(Row { line: line_number, name, body, at, quantity, value })
+        let written = cell("value").unwrap_or_default().to_string();
+        Ok(Row { line: line_number, name, body, at, quantity, value, written })
     };
     lines.map(row).collect()
 }
 
 impl Row {
+    fn given(&self, name: String) -> GivenValue {
+        GivenValue::written(name, self.value, &self.written)
+    }
+
     /// The value, and the quantity that the scene has to be asked for.
     ///
     /// # Errors
@@ -90,7 +97,7 @@ impl Row {
         let line = self.line;
         let Some(written) = self.at else {
             let name = self.name.clone().ok_or_else(|| format!("line {line}: neither a name nor a point"))?;
-            return Ok((GivenValue { name, value: self.value }, None));
+            return Ok((self.given(name), None));
         };
         let word = self.quantity.as_deref().ok_or_else(|| format!("line {line}: no quantity at the point"))?;
         let value = match word {
@@ -118,7 +125,7 @@ impl Row {
         let [x, y] = written;
         let name = self.name.clone().unwrap_or_else(|| format!("{word} at ({x}, {y})"));
         let target = Target::Point { body, at: written, value, smoothness: value.smoothness() };
-        Ok((GivenValue { name: name.clone(), value: self.value }, Some(Quantity { name, target })))
+        Ok((self.given(name.clone()), Some(Quantity { name, target })))
     }
 }
 

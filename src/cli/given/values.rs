@@ -73,7 +73,7 @@ fn read(path: &Path, scene: &mut Scene) -> Result<Vec<GivenValue>, CliError> {
         .map(|(name, value)| {
             let number = value.as_float().or_else(|| value.as_integer().map(|i| i as f64));
             match number.filter(|number| number.is_finite()) {
-                Some(value) => Ok(GivenValue { name, value }),
+                Some(value) => Ok(GivenValue::new(name, value)),
                 None => Err(refused(format!("the value of '{name}' is {value}, no finite number"), shape)),
             }
         })

@@ -13,6 +13,7 @@ use self::friction::on_contact;
 use self::slides::{friction_resultant, reported_moment, trace_friction};
 use super::candidate::{Judged, Reactions};
 use super::ceiling::{Allowance, Ceilings};
+use super::name::OfContact;
 use super::outcome::{ContactSummary, Profile, TwoSides};
 use super::tolerance::chosen;
 use super::{Basis, Check};
@@ -180,7 +181,7 @@ impl Sides<'_> {
         let disagree = disagreement(interface, (own, own_threshold), (&pieces, threshold));
         let pressed = 1.0 - summary.open_fraction;
         checks.push(Check::with_difference(
-            &format!("contact/{}/open-length", interface.name),
+            &OfContact::OpenLength.of(&interface.name),
             summary.open_fraction,
             summary.open_fraction_primal.unwrap_or(f64::NAN),
             disagree.length / summary.length,
@@ -232,7 +233,7 @@ impl Sides<'_> {
         unexplained: f64,
     ) -> Check {
         let misreported = best.balance.as_ref().and_then(|b| b.reactions.get(index)).copied().unwrap_or(0.0);
-        let name = format!("contact/{}/reactions", interface.name);
+        let name = OfContact::Reactions.of(&interface.name);
         let value = misreported.max(self.problem.scene.thickness * unexplained);
         let why = "Every reaction that the displacement model reports is what its stresses ask for at this vertex, their sum is \
              the reported resultant, and each differs from the dual force at its vertex by exactly the work of \
@@ -248,14 +249,13 @@ impl Sides<'_> {
         (index, interface): (usize, &Interface),
         nodes: &NodalDifference,
     ) -> [Check; 2] {
-        let name = |last: &str| format!("contact/{}/{last}", interface.name);
         let length: f64 = interface.pairs.iter().map(|p| p.length).sum();
         let norm = nodes.norm.max(f64::MIN_POSITIVE);
         let largest = nodes.largest[0].max(f64::MIN_POSITIVE);
         let round_off = self.pressure_round_off(best, (index, interface)) + REACTION * norm / length.sqrt();
         [
             Check::at_most(
-                &name("pressure-l2"),
+                &OfContact::PressureL2.of(&interface.name),
                 nodes.l2 / norm,
                 0.0,
                 (nodes.l2_allowed + round_off * length.sqrt()) / norm,
@@ -264,7 +264,7 @@ impl Sides<'_> {
                  the reaction at a vertex differs at most by what λ_h − σ(u_h) around it does on moving this vertex alone.",
             ),
             Check::with_difference(
-                &name("pressure-max"),
+                &OfContact::PressureMax.of(&interface.name),
                 nodes.largest[0],
                 nodes.largest[1],
                 (nodes.largest[0] - nodes.largest[1]).abs() / largest,
@@ -284,10 +284,9 @@ fn together((force, moment): ([f64; 2], f64), (other, more): ([f64; 2], f64)) ->
 
 /// Checks of pressures of a field without reactions: theory does not limit their difference.
 fn chosen_pressure(summary: &ContactSummary) -> Vec<Check> {
-    let name = |last: &str| format!("contact/{}/{last}", summary.name);
     let l2 = summary.pressure_l2_difference.map(|relative| {
         Check::at_most(
-            &name("pressure-l2"),
+            &OfContact::PressureL2.of(&summary.name),
             relative,
             0.0,
             chosen("pressure-l2"),
@@ -297,7 +296,7 @@ fn chosen_pressure(summary: &ContactSummary) -> Vec<Check> {
     });
     let (dual, primal) = (summary.pressure_max.dual, summary.pressure_max.primal.unwrap_or(f64::NAN));
     let max = Check::with_difference(
-        &name("pressure-max"),
+        &OfContact::PressureMax.of(&summary.name),
         dual,
         primal,
         (dual - primal).abs() / dual.max(primal),

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use super::nodal::{NodalDifference, NodalPressure};
 use super::pressure::Piece;
+use crate::compare::name::OfContact;
 use crate::compare::outcome::ContactSummary;
 use crate::compare::tolerance::chosen;
 use crate::compare::{Basis, Check};
@@ -57,7 +58,7 @@ impl Peaks {
             place(other_at),
             digits(explained),
         );
-        let (name, factor) = (format!("contact/{}/peak-pressure", summary.name), own.max(other) / own.min(other));
+        let (name, factor) = (OfContact::PeakPressure.of(&summary.name), own.max(other) / own.min(other));
         let allowed = chosen("peak-pressure") * explained;
         allowed.is_finite().then(|| Check::with_difference(&name, own, other, factor, allowed, Basis::Chosen, why))
     }

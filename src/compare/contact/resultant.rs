@@ -3,6 +3,7 @@
 use super::Sides;
 use crate::bounds::Sum;
 use crate::compare::candidate::Judged;
+use crate::compare::name::OfContact;
 use crate::compare::on_quadrilaterals::strain_norm_squared;
 use crate::compare::tolerance::chosen;
 use crate::compare::{Basis, Check};
@@ -23,7 +24,7 @@ pub fn resultant_check(
     dual: [f64; 2],
     primal: [f64; 2],
 ) -> Check {
-    let name = format!("contact/{}/resultant", interface.name);
+    let name = OfContact::Resultant.of(&interface.name);
     let size = dual[0].hypot(dual[1]);
     let difference = (dual[0] - primal[0]).hypot(dual[1] - primal[1]);
     let apart: Sum = best.field.local.triangles.iter().copied().collect();

@@ -1,8 +1,9 @@
 //! Marks where something is wrong, the same in every picture.
 
 use super::svg::{Anchor, Svg, escape, look, px};
+use crate::compare::name::Name;
 use crate::problem::Problem;
-use crate::report::Report;
+use crate::report::{Check, Report};
 use crate::scene::Target;
 
 /// A place with the number of its cause.
@@ -55,8 +56,8 @@ pub fn spots(problem: &Problem, report: &Report) -> Vec<Spot> {
     let mut spots: Vec<Spot> = Vec::new();
     for quantity in &problem.scene.quantities {
         let Target::Point { at, .. } = quantity.target else { continue };
-        let own = format!("quantity/{}/", quantity.name);
-        let off = report.checks.iter().any(|check| !check.passed && check.name.starts_with(&own));
+        let own = |check: &Check| matches!(Name::read(&check.name), Name::Quantity(name, _) if name == quantity.name);
+        let off = report.checks.iter().any(|check| !check.passed && own(check));
         match spots.iter_mut().find(|spot| spot.at == at) {
             Some(spot) => {
                 spot.names.push(quantity.name.clone());

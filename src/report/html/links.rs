@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::compare::Name;
 use crate::report::text::number::clean;
 use crate::report::{Check, Report};
 
@@ -17,19 +18,13 @@ pub(super) fn row(report: &Report, check: &Check) -> String {
 /// The id of the picture that shows what a check is about; `None` where there is none.
 pub(super) fn picture(report: &Report, check: &Check) -> Option<String> {
     let name = check.name.as_str();
-    let contact = |start: &str| {
-        report.contact.iter().position(|c| name.strip_prefix(start).is_some_and(|rest| rest.starts_with(&c.name)))
-    };
-    if let Some(i) = contact("contact/").or_else(|| contact("solution/contact/")) {
+    let read = Name::read(name);
+    if let Some(i) = report.contact.iter().position(|contact| Some(contact.name.as_str()) == read.contact()) {
         return Some(format!("pressure-{i}"));
     }
-    let quantity = |q: &crate::report::QuantitySummary| {
-        name.strip_prefix("quantity/")
-            .and_then(|rest| rest.strip_prefix(q.name.as_str()))
-            .is_some_and(|r| r.starts_with('/'))
-    };
-    if let Some(i) = report.quantities.iter().position(quantity) {
-        return Some(format!("quantity-{i}"));
+    if let Name::Quantity(quantity, _) = read {
+        let own = report.quantities.iter().position(|own| own.name == quantity);
+        return own.map(|i| format!("quantity-{i}"));
     }
     let energy = report.energy.is_some();
     match name.split('/').next().unwrap_or(name) {

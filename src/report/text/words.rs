@@ -1,6 +1,7 @@
 //! The words shared by the page, the summary and the JUnit file.
 
 use super::number::{significant, vector};
+use crate::compare::name::OfField;
 use crate::compare::{Basis, Check, MeanPressure};
 use crate::report::{GuaranteeLevel, Report, Status};
 
@@ -106,7 +107,7 @@ pub(crate) fn energies(report: &Report) -> Vec<(String, f64)> {
         }
     }
     for primal in &report.primal {
-        let recomputed = format!("energy/recomputed/{}", primal.name);
+        let recomputed = OfField::Recomputed.of(&primal.name);
         let reported = report.checks.iter().any(|check| check.name == recomputed && !check.passed);
         let suffix = match (primal.admissible, reported) {
             (_, true) => " (as reported)",

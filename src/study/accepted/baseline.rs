@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::compare::name::of_baseline;
 use crate::compare::{Allowances, Basis, Check, Comparison};
 use crate::report::folder::{refuse_file, replace_file};
 use crate::study::{Answer, Certified};
@@ -147,7 +148,7 @@ impl Baseline {
         let mut checks = Vec::new();
         let largest = stored.values.values().fold(0.0_f64, |m, v| m.max(v.abs()));
         for (name, &reference) in &stored.values {
-            let name_of = format!("baseline/{name}");
+            let name_of = of_baseline(name);
             let default = unchanged(reference, largest);
             let allowed = allow.given(&name_of).unwrap_or(default);
             let why = format!("{name} against the stored value of {}.", stored.scene);

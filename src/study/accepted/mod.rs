@@ -12,6 +12,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::BaselineError;
+use crate::compare::name::of_baseline;
 use crate::compare::{Allowances, Basis, Check};
 use crate::report::{BaselineRow, Change};
 use baseline::unchanged;
@@ -164,7 +165,7 @@ impl Accepted {
         let names: BTreeSet<&String> = accepted.keys().chain(values.keys()).collect();
         let row = |name: &String| {
             let (value, accepted) = (value(name), accepted.get(name));
-            let allowed = accepted.map(|number| allow.given(&format!("baseline/{name}")).unwrap_or(number.allowed));
+            let allowed = accepted.map(|number| allow.given(&of_baseline(name)).unwrap_or(number.allowed));
             let change = match (value, accepted.zip(allowed)) {
                 (None, _) => Change::Missing,
                 (Some(_), None) => Change::New,
@@ -246,10 +247,10 @@ impl Accepted {
 pub fn checks(rows: &[BaselineRow]) -> Vec<Check> {
     if !rows.is_empty() && rows.iter().all(|row| row.change == Change::New) {
         let why = "The baseline has no number of this scene; accept them with --accept, or apply baseline.patch.";
-        return vec![Check::not_made("baseline/scene", 0.0, Basis::Asked, why)];
+        return vec![Check::not_made(&of_baseline("scene"), 0.0, Basis::Asked, why)];
     }
     let check = |row: &BaselineRow| {
-        let (name, allowed) = (format!("baseline/{}", row.name), row.allowed.unwrap_or(0.0));
+        let (name, allowed) = (of_baseline(&row.name), row.allowed.unwrap_or(0.0));
         let not_made = |why: String| Check { value: row.value, ..Check::not_made(&name, allowed, Basis::Asked, why) };
         match (row.value, row.accepted) {
             (Some(value), Some(accepted)) => {

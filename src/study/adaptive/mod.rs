@@ -25,6 +25,7 @@ use std::time::{Duration, Instant};
 use super::answers::answers;
 use super::certified::{Certified, StudyError, carrying_loads};
 use super::dossier::in_numbers;
+use crate::compare::name::OfRun;
 use crate::compare::{Allowances, Basis, Check, Comparison};
 use crate::dual::{DualMethod, Options, Size};
 use crate::mesh::refinement::bisect::RefinementEdges;
@@ -368,21 +369,21 @@ fn stopped(reason: &Stop, row: &HistoryRow, goal: &Goal, pace: Option<String>) -
 
 /// Checks that the tolerance asked for is reached, with the best upper bound of the run.
 pub fn tolerance_check(certified: &Certified, comparison: &Comparison, tolerance: f64, allow: &Allowances) -> Check {
-    const NAME: &str = "bracket/tolerance";
-    let allowed = allow.given(NAME).unwrap_or(tolerance);
+    let name = OfRun::Tolerance.name();
+    let allowed = allow.given(name).unwrap_or(tolerance);
     if let Some(note) = certified.problem.weakened() {
         let why = format!("The bounds are not guaranteed for the scene as it is written: {}.", note.text);
-        return Check::not_made(NAME, allowed, Basis::Asked, why);
+        return Check::not_made(name, allowed, Basis::Asked, why);
     }
     match comparison.upper(&certified.bracket) {
         Some((upper, _)) => Check::at_most(
-            NAME,
+            name,
             certified.bracket.relative_error(upper.upper()),
             0.0,
             allowed,
             Basis::Asked,
             "The guaranteed relative energy-norm error against the tolerance that was asked for.",
         ),
-        None => Check::not_made(NAME, allowed, Basis::Asked, "There is no upper bound to hold the tolerance against."),
+        None => Check::not_made(name, allowed, Basis::Asked, "There is no upper bound to hold the tolerance against."),
     }
 }

@@ -1,6 +1,7 @@
 //! Displacement models that solve Coulomb friction themselves, with limits from their own reactions, beside the bound of the stress side.
 
 use super::Coulomb;
+use crate::compare::name::OfField;
 use crate::compare::{Basis, Check, ContactSummary, chosen};
 use crate::primal::{PrimalCoulomb, PrimalSolution, Space};
 
@@ -25,7 +26,7 @@ impl Coulomb {
         let admissible = solution.admissible.unwrap_or(false);
         admissible.then(|| {
             Check::with_difference(
-                &format!("energy/coulomb/{name}"),
+                &OfField::Coulomb.of(name),
                 energy,
                 lowest,
                 (lowest - energy).max(0.0),
@@ -40,7 +41,7 @@ impl Coulomb {
 
 /// The forces of friction of the model's own solution and of the stresses.
 fn friction(name: &str, coulomb: &PrimalCoulomb, contacts: &[ContactSummary]) -> Check {
-    let (name, allowed) = (format!("coulomb/{name}/friction-force"), chosen("friction-force"));
+    let (name, allowed) = (OfField::FrictionForce.of(name), chosen("friction-force"));
     if !coulomb.converged {
         let why = format!(
             "The displacement model found no limits of friction that go with its own reactions: after {} solutions they still changed{}.",

@@ -120,7 +120,7 @@ impl Call {
         self.stresses(&mut args.solve, None, None)?;
         args.displacement = file.map(PathBuf::from).into_iter().collect();
         (args.field, args.solution) = (field, solution);
-        args.values.value = values.into_iter().map(|(name, value)| GivenValue { name, value }).collect();
+        args.values.value = values.into_iter().map(|(name, value)| GivenValue::new(name, value)).collect();
         args.solve.tolerance = tolerance.map(|value| tolerable("tolerance", value)).transpose()?;
         args.limits = self.limits(None, None)?;
         let mut session = self.session("certify", opened(&scene)?, &args.solve)?;
