@@ -61,6 +61,10 @@ impl<'a> Terms<'a> {
         let pairs = pairs.filter_map(|(i, j)| {
             let terms = [order[i].1, order[j].1];
             let trial = self.trial(&terms);
+            // A part has a number beside the whole that is none of its own.
+            if trial.is_of_all_and_a_part() {
+                return None;
+            }
             let alone = order[i].0.min(order[j].0);
             (trial.left <= TOGETHER * alone && self.both_move(terms)).then_some(trial)
         });

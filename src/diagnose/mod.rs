@@ -67,6 +67,12 @@ impl Finding {
         ["/glued", "/open", "/friction-law"].iter().any(|end| self.name.ends_with(end))
     }
 
+    /// True if it is of the friction of a contact.
+    fn is_of_friction(&self) -> bool {
+        self.name.starts_with("contact/")
+            && self.name.rsplit('/').next().is_some_and(|last| last == "sticks" || last.starts_with("friction"))
+    }
+
     /// True if it asks for forces on a boundary that is a side of a contact named by one of the findings `told`.
     fn is_of_contact_in(&self, told: &[&str]) -> bool {
         let side = self.name.strip_prefix("boundary/").and_then(|rest| rest.strip_suffix("/forces"));
@@ -88,6 +94,14 @@ struct Trial {
 }
 
 impl Trial {
+    /// True if it has a number of every load, or of every body force, beside that of one of them.
+    fn is_of_all_and_a_part(&self) -> bool {
+        let is_load = |finding: &Finding| finding.name.starts_with("load/") || finding.name.ends_with("/body_force");
+        let has = |name: &str| self.findings.iter().any(|finding| finding.name == name);
+        let others = |name: &str| self.findings.iter().any(|finding| finding.name != name && is_load(finding));
+        ["loads", "bodies/body_force"].into_iter().any(|whole| has(whole) && others(whole))
+    }
+
     /// True if a finding of forces or displacements along supports and contacts stands beside this explanation, and is no consequence of
     /// it.
     fn leaves(&self, finding: &Finding) -> bool {
@@ -155,7 +169,11 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
             Ok(trial) => {
                 diagnosis.explained = Some(1.0 - trial.left);
                 diagnosis.findings.retain(|finding| trial.leaves(finding));
+                // Friction is read from forces that are not yet right.
+                let (rubbing, direct) = diagnosis.findings.into_iter().partition(Finding::is_of_friction);
+                diagnosis.findings = direct;
                 diagnosis.findings.extend(trial.findings);
+                diagnosis.findings.extend::<Vec<Finding>>(rubbing);
             }
             Err(_) if mistakes::single::finding(solution).is_some() => {
                 diagnosis.explained = Some(1.0);
@@ -190,17 +208,20 @@ fn hypotheses<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
     mistakes::loads::terms(space, terms);
     mistakes::springs::terms(space, terms);
     let mut trials = mistakes::values::trials(space);
+    trials.extend(mistakes::outline::trials(space, terms));
     if revolved {
         trials.extend(mistakes::turned::trials(space));
     } else {
         trials.extend(mistakes::shift::trial(space, |_| vec![[0.0; 2]; space.count()]));
-        trials.extend(mistakes::material::trials(space));
-        trials.extend(mistakes::anisotropic::trials(space));
+        trials.push(mistakes::material::other_state(space));
+        trials.extend(mistakes::initial::in_the_mean(space));
         trials.extend(mistakes::layer::trials(space));
         trials.extend(mistakes::moved::trial(space));
         trials.extend(mistakes::lumped::trials(space));
         trials.extend(mistakes::integration::trials(space));
     }
+    trials.extend(mistakes::material::laws(space));
+    trials.extend(mistakes::anisotropic::trials(space));
     trials.extend(mistakes::sampled::trials(space));
     trials.extend(mistakes::local::trials(space));
     trials.extend(mistakes::contact::trials(space));

@@ -34,6 +34,7 @@ impl Finding {
             "shear" => is_mistyped(value),
             "stiffness" if self.name.starts_with("body/") => is_mistyped(value),
             "pulling" => is_mistyped(value),
+            "springs" => value > 0.0,
             // Springs may be missing, or act where there should be none.
             "stiffness" | "normal" | "tangential" => match self.expected {
                 Some(given) if given != 0.0 => (value / given).abs() <= NOTHING || is_mistyped(value / given),

@@ -4,8 +4,8 @@ use crate::bounds::{Cell, Hold};
 use crate::compare::Solution;
 use crate::compare::forces::{cells, turned};
 use crate::elasticity::Elasticity;
-use crate::element::Material;
 use crate::element::geometry::{gradients, shape_gradients};
+use crate::element::{Material, Quadrilateral};
 use crate::problem::Problem;
 use crate::scene::{Body, Kinematics};
 
@@ -231,6 +231,48 @@ impl<'a> Space<'a> {
         column
     }
 
+    /// Change of the residual by bodies of other materials; with the material its initial strain changes too.
+    pub fn with_materials(&self, other: impl Fn(usize) -> Option<Material>) -> Vec<f64> {
+        let (problem, solution) = (self.problem(), self.solution);
+        let (scene, materials) = (&problem.scene, problem.materials());
+        if let Some(rule) = solution.rule {
+            let others: Vec<Option<Material>> = (0..scene.bodies.len()).map(other).collect();
+            return self.column(turned::stress_forces(
+                problem,
+                solution.candidate,
+                rule,
+                |_| true,
+                |at| {
+                    let stress = |material: &Material| material.revolved().stress(at.elastic(material).0);
+                    let (other, own) = (stress(others[at.body].as_ref()?), stress(&materials[at.body]));
+                    Some([0, 1, 2, 3].map(|c| other[c] - own[c]))
+                },
+            ));
+        }
+        let mut change = self.stiffness(|b| {
+            let own = Moduli::of_body(problem, &scene.bodies[b]);
+            other(b).map(|material| Moduli::of_material(&material).less(own))
+        });
+        if scene.bodies.iter().any(|body| !body.initial.is_none()) {
+            let forces = self.forces_of(|b, x| {
+                let material = other(b)?;
+                let (other, own) = (material.initial().at(x), materials[b].initial().at(x));
+                Some(material.stress([0, 1, 2].map(|c| own[c] - other[c])))
+            });
+            change.iter_mut().zip(self.column(forces)).for_each(|(c, f)| *c += f);
+        }
+        change
+    }
+
+    /// As [`Self::with_materials`], with other laws and the temperatures and initial stresses of the scene.
+    pub fn with_laws(&self, law: impl Fn(usize) -> Option<Elasticity>) -> Vec<f64> {
+        let scene = &self.problem().scene;
+        self.with_materials(|b| {
+            let (law, kinematics) = (law(b)?, scene.kinematics);
+            Some(Material::new(kinematics, &law).with_initial(kinematics, &law, &scene.bodies[b].initial))
+        })
+    }
+
     /// Nodal forces ∫ s:e(φ) of a stress that is affine in each body.
     pub fn forces_of(&self, stress: impl Fn(usize, [f64; 2]) -> Option<[f64; 3]>) -> Vec<[f64; 2]> {
         let problem = self.problem();
@@ -262,6 +304,25 @@ impl<'a> Space<'a> {
                 let (p, q) = (corners[(at + 1) % 3], corners[(at + 2) % 3]);
                 let s = stress(*body, [0, 1].map(|c| 0.5 * (p[c] + q[c]))).unwrap_or_default();
                 nodes.iter().zip(shape).for_each(|(node, d)| add(*node, weight, d, s));
+            }
+        }
+        forces
+    }
+
+    /// Nodal forces ∫ s:e(φ) of a stress on the quadrilaterals alone, by body, place and cell.
+    pub fn forces_on_cells(&self, stress: impl Fn(usize, [f64; 2], &Quadrilateral) -> [f64; 3]) -> Vec<[f64; 2]> {
+        let problem = self.problem();
+        let mut forces = vec![[0.0; 2]; self.count()];
+        for cell in &self.solution.candidate.cells {
+            let body = cell.triangles.first().map_or(0, |t| problem.mesh.body[*t]);
+            for (at, weight) in cells::rule(self.solution.points.unwrap_or(cells::full(&cell.field))) {
+                let (gradients, _) = cell.field.gradients(at);
+                let s = stress(body, cell.field.position(at), &cell.field);
+                let weight = problem.scene.thickness * weight;
+                for (node, d) in cell.nodes.iter().zip(gradients) {
+                    forces[*node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
+                    forces[*node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
+                }
             }
         }
         forces

@@ -139,3 +139,80 @@ fn few_nodes_are_no_excuse_for_another_name() {
     let sentence = explained("soft_triangle", "soft_triangle");
     assert!(sentence.starts_with("This explains it: the equations of point 6 of the file"), "{sentence}");
 }
+
+/// Corners of quadratic edges that slide carry what friction may, whatever their middles do.
+#[test]
+fn corners_that_slide_carry_the_bound() {
+    for scene in ["slides_free", "slides_wrongly"] {
+        let (code, checks) = claimed(scene, scene);
+        assert_eq!(code, 1, "{scene}");
+        assert!(checks.iter().any(|check| check["name"] == "solution/contact/foot|rigid/friction"), "{checks:?}");
+    }
+}
+
+/// The pressures of elastic contact store what goes beyond the gap, and a stiff one multiplies the digits of the file.
+#[test]
+fn elastic_contact_beyond_a_gap_and_stiff_is_that_of_the_scene() {
+    assert_eq!(claimed("beyond_a_gap", "beyond_a_gap"), (0, Vec::new()));
+    let (code, checks) = claimed("stiff_contact", "stiff_contact.dat");
+    let decisive: Vec<&Value> = checks.iter().filter(|check| check["basis"] != "chosen").collect();
+    assert_eq!((code, decisive), (0, Vec::new()));
+}
+
+/// The name of the first finding on a field of the scene that a text makes of one of the folder.
+fn named(scene: &str, field: &str, change: impl Fn(&str) -> String) -> String {
+    let inputs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/claims");
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = std::fs::read_to_string(inputs.join(format!("{scene}.toml"))).expect("readable");
+    let changed = change(&text);
+    for file in std::fs::read_dir(&inputs)
+        .expect("a folder")
+        .flatten()
+        .filter(|file| file.path().extension().is_some_and(|end| end == "inp"))
+    {
+        std::fs::copy(file.path(), folder.path().join(file.file_name())).expect("a copy");
+    }
+    std::fs::write(folder.path().join("scene.toml"), changed).expect("writable");
+    let mut command = hypercircle(folder.path(), ["certify", "scene.toml", "--displacement"]);
+    let output = run({
+        command.arg(inputs.join(field)).args(["--solution", "--quiet", "--out", "out"]);
+        command
+    });
+    let report = std::fs::read(folder.path().join("out/report.json")).unwrap_or_else(|_| panic!("{}", said(&output)));
+    let report: Value = serde_json::from_slice(&report).expect("JSON");
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    let findings = report["diagnosis"][0]["findings"].as_array().cloned().unwrap_or_default();
+    findings.first().and_then(|finding| finding["name"].as_str()).unwrap_or("none").to_string()
+}
+
+/// What the model has and the scene lacks is named with the side that it is on; loads and temperatures by what is wrong with them.
+#[test]
+fn conditions_that_the_scene_lacks_and_temperatures_are_named() {
+    let same = |text: &str| text.to_string();
+    let without = |part: &'static str| {
+        move |text: &str| {
+            let (before, after) = text.split_once(part).unwrap_or_else(|| panic!("no {part}"));
+            before.to_string() + after
+        }
+    };
+    let replaced = |old: &'static str, new: &'static str| {
+        move |text: &str| {
+            assert!(text.contains(old), "{old}");
+            text.replace(old, new)
+        }
+    };
+    let pressure = "[[tractions]]\non=\"TOP\"\npressure=5.0\n";
+    let springs = "[[supports]]\non=\"BOT\"\ntype=\"spring\"\nstiffness=[3000.0,1000.0]\n";
+    let missing = named("two_loads", "two_loads.vtu", without(pressure));
+    assert!(missing.starts_with("boundary/") && missing.ends_with("/forces"), "{missing}");
+    let sprung = named("on_springs", "on_springs.vtu", without(springs));
+    assert!(sprung.starts_with("boundary/") && sprung.ends_with("/springs"), "{sprung}");
+    let lifted = |text: &str| text.replace("[0.0,-30.0]", "[0.0,30.0]").replace("[0.0,-10.0]", "[0.0,10.0]");
+    assert_eq!(named("two_loads", "two_loads.vtu", lifted), "bodies/body_force");
+    let flat = replaced("gradient=[15.0,-10.0]}\n[bodies.RIGHT]", "gradient=[0.0,0.0]}\n[bodies.RIGHT]");
+    assert_eq!(named("on_springs", "on_springs.vtu", flat), "body/LEFT/temperature");
+    let warmer = replaced("value=20.0", "value=40.0");
+    assert_eq!(named("on_springs", "on_springs.vtu", warmer), "bodies/temperature");
+    assert_eq!(named("layer", "layer.dat", same), "kinematics/thickness-strain");
+    assert_eq!(named("mean_temperature", "mean_temperature.dat", same), "temperature/mean");
+}

@@ -188,3 +188,52 @@ fn verify_holds_both_models_against_the_intervals() {
     }
     assert_eq!(written(folder.path(), "quantities.csv").lines().count(), 1 + 3 * 3);
 }
+
+/// A value counts with half a unit of its last digit, where three digits are there; fewer digits tell nothing.
+#[test]
+fn a_value_that_is_rounded_is_no_wrong_one() {
+    let scene = "[model]\nkinematics = \"plane-stress\"\n[geometry]\nsize = 0.5\n[[geometry.polygons]]\nbody = \"block\"\n\
+                 points = [[0, 0], [1, 0], [1, 1], [0, 1]]\nedges = [\"foot\", \"right\", \"top\", \"left\"]\n[bodies.block]\nyoung = 1.0\npoisson = 0.3\n\
+                 [[supports]]\non = \"left\"\ntype = \"roller\"\n[[tractions]]\non = \"top\"\npressure = 0.3333333\n[[contacts]]\non = \"foot\"\n\
+                 [[quantities]]\nname = \"foot\"\nforce = \"foot\"\n";
+    let folder = folder_with("");
+    std::fs::write(folder.path().join("scene.toml"), scene).expect("writable");
+    for (value, code, said) in [
+        ("0.3333333", 0, "lies in its interval."),
+        ("0.333", 0, "but for the digits that it lacks"),
+        ("333e-3", 0, "but for the digits that it lacks"),
+        ("0.334", 1, "beyond the end"),
+        ("0.3330", 1, "beyond the end"),
+        ("0.3", 1, "may be it with fewer digits"),
+        ("0.2", 1, "beyond the end"),
+    ] {
+        let output = call(folder.path(), &["certify", "scene.toml", "--value", &format!("foot={value}")]);
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert_eq!((output.status.code(), text.contains(said)), (Some(code), true), "{value}: {text}");
+    }
+}
+
+/// −2𝓛 is the work of the loads where nothing else works: a bar of E = 1 under a traction of 1 does 1, and what heat adds is no part of it.
+#[test]
+fn the_compliance_is_told_where_loads_alone_do_work() {
+    let bar = |young: &str, heat: &str| {
+        format!(
+            "[model]\nkinematics = \"plane-stress\"\n[geometry]\nsize = 0.5\n[[geometry.polygons]]\nbody = \"bar\"\n\
+             points = [[0, 0], [1, 0], [1, 1], [0, 1]]\nedges = [\"foot\", \"right\", \"\", \"left\"]\n[bodies.bar]\nyoung = {young}\npoisson = 0.0\n{heat}\
+             [[supports]]\non = \"left\"\ntype = \"roller\"\n[[supports]]\non = \"foot\"\ntype = \"roller\"\n[[tractions]]\non = \"right\"\nvalue = [1, 0]\n"
+        )
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let heat = "expansion = 0.1\ntemperature = 5.0\n";
+    for (young, heat, told) in [("1.0", "", true), ("1.0", heat, false), ("[0.99, 1.01]", heat, false)] {
+        std::fs::write(folder.path().join("scene.toml"), bar(young, heat)).expect("writable");
+        ended(heat, &call(folder.path(), &["solve", "scene.toml"]), 0, &[]);
+        let report = report(folder.path());
+        let ends = [&report["energy"]["compliance"], &report["data_range"]["compliance"]];
+        assert_eq!(ends[0].is_array(), told, "{}", report["energy"]);
+        assert!(!ends[1].is_array(), "{}", report["data_range"]);
+        if told {
+            assert!(number(&ends[0][0]) <= 1.0 + 1e-12 && 1.0 - 1e-12 <= number(&ends[0][1]), "{}", ends[0]);
+        }
+    }
+}

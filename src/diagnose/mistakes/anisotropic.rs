@@ -3,7 +3,6 @@
 use crate::diagnose::space::{Moduli, Space};
 use crate::diagnose::{Finding, Trial};
 use crate::elasticity::{Anisotropic, Elasticity, Matrix, MatrixKind, Orthotropic};
-use crate::element::Material;
 
 /// A mistake: the end of its name, the law that results, and the sentence about a body.
 struct Mistake {
@@ -21,7 +20,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
         for Mistake { name, law, sentence } in mistakes(&bodies[b].elasticity) {
             let finding = format!("body/{}/{name}", bodies[b].name);
             let sentence = format!("{sentence} of {}", bodies[b].name);
-            if !bodies[b].initial.is_none() {
+            if !bodies[b].initial.is_none() && !space.problem().section().is_revolved() {
                 trials.push(with_own_initial(space, (b, &law), &finding, &sentence));
             }
             trials.push(trial(space, |at| (at == b).then_some(law), finding, sentence));
@@ -42,12 +41,8 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
 }
 
 fn trial(space: &Space<'_>, law: impl Fn(usize) -> Option<Elasticity>, name: String, sentence: String) -> Trial {
-    let scene = &space.problem().scene;
-    let change = change(space, |b| {
-        let (law, kinematics) = (law(b)?, scene.kinematics);
-        Some(Material::new(kinematics, &law).with_initial(kinematics, &law, &scene.bodies[b].initial))
-    });
-    Trial { rank: 0, left: space.left_with(&change), findings: vec![Finding::new(name, None, None, sentence)] }
+    let left = space.left_with(&space.with_laws(law));
+    Trial { rank: 0, left, findings: vec![Finding::new(name, None, None, sentence)] }
 }
 
 /// As [`trial`], for one body whose initial strain stays as it is.
@@ -59,25 +54,6 @@ fn with_own_initial(space: &Space<'_>, (body, law): (usize, &Elasticity), name: 
     });
     let sentence = format!("{sentence}, and its initial strain is that of the scene");
     Trial { rank: 0, left: space.left_with(&change), findings: vec![Finding::new(name, None, None, sentence)] }
-}
-
-/// Change of the residual by bodies of other materials; with the material its initial strain changes too.
-pub fn change(space: &Space<'_>, other: impl Fn(usize) -> Option<Material>) -> Vec<f64> {
-    let scene = &space.problem().scene;
-    let mut change = space.stiffness(|b| {
-        let own = Moduli::of_law(scene.kinematics, &scene.bodies[b].elasticity);
-        other(b).map(|material| Moduli::of_material(&material).less(own))
-    });
-    if scene.bodies.iter().any(|body| !body.initial.is_none()) {
-        let materials = space.problem().materials();
-        let forces = space.forces_of(|b, x| {
-            let material = other(b)?;
-            let (other, own) = (material.initial().at(x), materials[b].initial().at(x));
-            Some(material.stress([0, 1, 2].map(|c| own[c] - other[c])))
-        });
-        change.iter_mut().zip(space.column(forces)).for_each(|(c, f)| *c += f);
-    }
-    change
 }
 
 /// The commonest mistakes in such a law, where they result in another material.

@@ -1,9 +1,10 @@
-//! Plane stress made of a layer of solid elements, as CalculiX makes its elements CPS3 and CPS6.
+//! Plane stress made of a layer of solid elements, as CalculiX makes its elements CPS3, CPS4, CPS6 and CPS8.
 //!
 //! The nodes of such a layer move across it by ±½t e, with a thickness strain e that is continuous between elements: the stress across
 //! the layer vanishes in the mean around a node and not in every point. With the shear strains z∇e the energy is
 //! ½∫ σ:ε + ½G (t²/12) |∇e|², whose minimum over e is sought here by conjugate gradients.
 
+use crate::compare::forces::cells;
 use crate::diagnose::space::{Moduli, Space};
 use crate::diagnose::{Finding, Trial};
 use crate::scene::Kinematics;
@@ -28,11 +29,16 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
     if scene.thickness != 1.0 {
         thicknesses.push(1.0);
     }
-    thicknesses.into_iter().map(|thickness| trial(space, thickness)).collect()
+    // Quadrilaterals of eight nodes are integrated in full, or with one point less in each direction.
+    let fields = space.solution.candidate.cells.iter();
+    let full = fields.map(|cell| cells::full(&cell.field)).max().unwrap_or(2);
+    let rules = (if full > 2 { full - 1 } else { full })..=full;
+    let tried = thicknesses.into_iter().flat_map(|thickness| rules.clone().map(move |points| (thickness, points)));
+    tried.map(|(thickness, points)| trial(space, thickness, points)).collect()
 }
 
-fn trial(space: &Space<'_>, thickness: f64) -> Trial {
-    let layer = Layer::new(space, thickness);
+fn trial(space: &Space<'_>, thickness: f64, points: usize) -> Trial {
+    let layer = Layer::new(space, thickness, points);
     let strain = layer.thickness_strain();
     let made = space.column(layer.forces(&strain));
     let problem = space.problem();
@@ -68,7 +74,7 @@ struct Layer {
 }
 
 impl Layer {
-    fn new(space: &Space<'_>, thickness: f64) -> Self {
+    fn new(space: &Space<'_>, thickness: f64, of_cells: usize) -> Self {
         let (problem, solution) = (space.problem(), space.solution);
         let quadratic = solution.candidate.degree > 1;
         let rule: &[[f64; 3]] = if quadratic { &INNER } else { &CENTRE };
@@ -76,15 +82,34 @@ impl Layer {
         for t in 0..problem.mesh.triangles.len() {
             let body = &problem.scene.bodies[problem.mesh.body[t]];
             let Moduli { lambda, mu, .. } = Moduli::of_law(Kinematics::PlaneStrain, &body.elasticity);
-            for l in rule {
-                let gradients = solution.gradients(t, *l);
+            let strain_of = |shapes: &[(usize, f64, [f64; 2])]| {
                 let mut strain = [0.0; 3];
-                for (node, d) in &gradients {
+                for (node, _, d) in shapes {
                     let u = solution.candidate.value(*node);
                     strain[0] += d[0] * u[0];
                     strain[1] += d[1] * u[1];
                     strain[2] += 0.5 * (d[0] * u[1] + d[1] * u[0]);
                 }
+                strain
+            };
+            let Some(cell) = space.counted(t) else { continue };
+            if let Some(cell) = cell {
+                for (at, weight) in cells::rule(of_cells) {
+                    let (gradients, determinant) = cell.field.gradients(at);
+                    let functions = cell.field.shapes(at).into_iter().zip(gradients);
+                    let shapes: Vec<_> = cell
+                        .nodes
+                        .iter()
+                        .zip(functions)
+                        .map(|(node, (value, d))| (*node, value, d.map(|d| d / determinant)))
+                        .collect();
+                    let weight = problem.scene.thickness * weight * determinant;
+                    points.push(Point { weight, lambda, mu, strain: strain_of(&shapes), shapes });
+                }
+                continue;
+            }
+            for l in rule {
+                let gradients = solution.gradients(t, *l);
                 let values: Vec<f64> = match quadratic {
                     false => l.to_vec(),
                     true => {
@@ -93,9 +118,10 @@ impl Layer {
                         (0..3).map(corner).chain((0..3).map(middle)).collect()
                     }
                 };
-                let shapes = gradients.into_iter().zip(values).map(|((node, d), value)| (node, value, d)).collect();
+                let shapes: Vec<_> =
+                    gradients.into_iter().zip(values).map(|((node, d), value)| (node, value, d)).collect();
                 let weight = problem.scene.thickness * problem.mesh.area(t) / rule.len() as f64;
-                points.push(Point { weight, lambda, mu, strain, shapes });
+                points.push(Point { weight, lambda, mu, strain: strain_of(&shapes), shapes });
             }
         }
         Layer { points, nodes: space.count(), bending: thickness * thickness / 12.0 }

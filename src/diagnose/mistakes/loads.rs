@@ -29,13 +29,17 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
     let several = tractions.len() + weights.len() > 1;
     let negative = |forces: &[[f64; 2]]| space.column(forces.iter().map(|f| f.map(|x| -x)).collect());
     let (thickness, revolved) = (scene.thickness, space.solution.rule.is_some());
-    let all = move |name: &str, what: &str, s: f64| {
+    let hinted = move |what: &str, s: f64| {
         let mut sentence = factor(what, s);
         if revolved && (near(s, TAU) || near(s, 1.0 / TAU)) {
             sentence += ", as if 2π were left out on one side";
         } else if thickness != 1.0 && (near(s, thickness) || near(s, 1.0 / thickness)) {
             sentence += &format!(", as if the thickness {thickness} were left out on one side");
         }
+        sentence
+    };
+    let all = move |name: &str, what: &str, s: f64| {
+        let mut sentence = hinted(what, s);
         // No modulus is negative, and what is missing is no unit.
         if s > LEAST_UNIT {
             sentence += &format!(" (or every Young's modulus {} times)", times(1.0 / s));
@@ -47,13 +51,21 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
         let column = negative(&space.solution.forces.applied());
         terms.push(1, vec![column], move |x| all("loads", "every load", 1.0 + x[0]));
     }
+    if weights.len() > 1 {
+        let all = weights.iter().map(|&b| of_body(space, b, &scene.bodies[b].body_force));
+        let whole = all.reduce(|sum, own| sum.iter().zip(own).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect());
+        terms.push(1, vec![negative(&whole.unwrap_or_default())], move |x| {
+            let sentence = hinted("the body force of every body", 1.0 + x[0]);
+            vec![Finding::new("bodies/body_force", Some(1.0 + x[0]), Some(1.0), sentence)]
+        });
+    }
     for traction in &scene.tractions {
         parts_of_traction(space, traction, terms);
     }
     for (on, forces) in &tractions {
         let (on, name, what) = (on.to_string(), format!("load/{on}"), format!("the load on {on}"));
         terms.push(1, vec![negative(forces)], move |x| match several {
-            true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
+            true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), hinted(&what, 1.0 + x[0]))],
             false if revolved => all("loads", "every load", 1.0 + x[0]),
             false => all(&name, &what, 1.0 + x[0]),
         });
@@ -84,7 +96,7 @@ pub fn terms<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) {
             let whole = of_body(space, b, force);
             let (name, what) = (name.clone(), what.clone());
             terms.push(1, vec![negative(&whole)], move |x| match several {
-                true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), factor(&what, 1.0 + x[0]))],
+                true => vec![Finding::new(name.clone(), Some(1.0 + x[0]), Some(1.0), hinted(&what, 1.0 + x[0]))],
                 false if revolved => all("loads", "every load", 1.0 + x[0]),
                 false => all(&name, &what, 1.0 + x[0]),
             });

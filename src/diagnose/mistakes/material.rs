@@ -4,85 +4,67 @@ use crate::diagnose::fit::Terms;
 use crate::diagnose::space::{Moduli, Space};
 use crate::diagnose::words::{factor, near, number_beside};
 use crate::diagnose::{Finding, Trial};
+use crate::elasticity::Elasticity;
 use crate::element::Material;
 use crate::scene::{Body, Kinematics};
 
-/// Mistakes without a number: the other plane state, constants exchanged between bodies.
-pub fn trials(space: &Space<'_>) -> Vec<Trial> {
-    let problem = space.problem();
-    let (scene, bodies) = (&problem.scene, &problem.scene.bodies);
-    let own: Vec<Moduli> = bodies.iter().map(|b| Moduli::of_body(problem, b)).collect();
-    let with = |others: &dyn Fn(usize) -> Moduli, finding: Finding| {
-        let change = space.stiffness(|b| Some(others(b).less(own[b])).filter(|d| *d != NONE));
-        Trial { rank: 0, left: space.left_with(&change), findings: vec![finding] }
-    };
-    let isotropic = |body: &Body| body.elasticity.isotropic();
+/// The other plane state.
+pub fn other_state(space: &Space<'_>) -> Trial {
+    let scene = &space.problem().scene;
     let (other, sentence) = match scene.kinematics {
         Kinematics::PlaneStrain | Kinematics::Axisymmetric => {
             (Kinematics::PlaneStress, "plane stress stands in place of plane strain")
         }
         Kinematics::PlaneStress => (Kinematics::PlaneStrain, "plane strain stands in place of plane stress"),
     };
-    let negative =
-        Finding::new("bodies/poisson-sign", None, None, "Poisson's ratio of every body has the opposite sign");
-    let mut trials = Vec::new();
-    if bodies.iter().any(|body| isotropic(body).is_some()) {
-        let turned = |b: usize| match isotropic(&bodies[b]) {
-            Some([young, poisson]) => Moduli::of(scene.kinematics, young, -poisson),
-            None => own[b],
-        };
-        trials.push(with(&turned, negative));
-    }
-    let in_other_state = super::anisotropic::change(space, |b| {
-        let Body { elasticity, initial, .. } = &bodies[b];
+    let change = space.with_materials(|b| {
+        let Body { elasticity, initial, .. } = &scene.bodies[b];
         let possible = !elasticity.is_plane_stress_only();
         possible.then(|| Material::new(other, elasticity).with_initial(other, elasticity, initial))
     });
     let findings = vec![Finding::new("kinematics", None, None, sentence)];
-    trials.push(Trial { rank: 0, left: space.left_with(&in_other_state), findings });
+    Trial { rank: 0, left: space.left_with(&change), findings }
+}
+
+/// Mistakes that result in other laws: ratios of the opposite sign, constants exchanged between bodies.
+pub fn laws(space: &Space<'_>) -> Vec<Trial> {
+    let bodies = &space.problem().scene.bodies;
+    let constants: Vec<Option<[f64; 2]>> = bodies.iter().map(|body| body.elasticity.isotropic()).collect();
+    let isotropic = |[young, poisson]: [f64; 2]| Elasticity::Isotropic { young, poisson };
+    let trial = |name: String, sentence: String, law: &dyn Fn(usize) -> Option<Elasticity>| Trial {
+        rank: 0,
+        left: space.left_with(&space.with_laws(law)),
+        findings: vec![Finding::new(name, None, None, sentence)],
+    };
+    let mut trials = Vec::new();
+    if constants.iter().any(Option::is_some) {
+        let sentence = "Poisson's ratio of every body has the opposite sign".to_string();
+        let negative = |b: usize| constants[b].map(|[young, poisson]| isotropic([young, -poisson]));
+        trials.push(trial("bodies/poisson-sign".into(), sentence, &negative));
+    }
     let pairs = (0..bodies.len()).flat_map(|i| (i + 1..bodies.len()).map(move |j| (i, j)));
     for (i, j) in pairs.take(MOST_PAIRS) {
-        let swapped = |b: usize| {
-            if b == i {
-                j
-            } else if b == j {
-                i
-            } else {
-                b
-            }
+        let other = |b: usize| if b == i { Some(j) } else { (b == j).then_some(i) };
+        let mut exchange = |name: &str, what: &str, law: &dyn Fn(usize) -> Option<Elasticity>| {
+            let names = [&bodies[i].name, &bodies[j].name];
+            let sentence = format!("{what} of {} and {} are exchanged", names[0], names[1]);
+            trials.push(trial(format!("bodies/{}|{}/{name}", names[0], names[1]), sentence, law));
         };
-        let mut exchange = |name: &str, what: &str, made: &dyn Fn(&Body, &Body) -> Moduli| {
-            let finding = Finding::new(
-                format!("bodies/{}|{}/{name}", bodies[i].name, bodies[j].name),
-                None,
-                None,
-                format!("{what} of {} and {} are exchanged", bodies[i].name, bodies[j].name),
-            );
-            let own = &own;
-            trials
-                .push(with(&|b| if swapped(b) == b { own[b] } else { made(&bodies[b], &bodies[swapped(b)]) }, finding));
-        };
-        let exchanged = |own: &Body, other: &Body, which: [bool; 2]| {
-            let constants = isotropic(own).zip(isotropic(other));
-            constants.map_or(NONE, |(own, other)| {
-                let [young, poisson] = [0, 1].map(|i| if which[i] { other[i] } else { own[i] });
-                Moduli::of(scene.kinematics, young, poisson)
-            })
-        };
-        let apart = match isotropic(&bodies[i]).zip(isotropic(&bodies[j])) {
+        let constants_of = |b: usize| Some((constants[b]?, constants[other(b)?]?));
+        let apart = match constants[i].zip(constants[j]) {
             Some((a, b)) => [a[0] != b[0], a[1] != b[1]],
             None => [false; 2],
         };
         if apart[1] {
-            exchange("poisson-exchanged", "Poisson's ratios", &|own, other| exchanged(own, other, [false, true]));
+            let law = |b: usize| constants_of(b).map(|(own, other)| isotropic([own[0], other[1]]));
+            exchange("poisson-exchanged", "Poisson's ratios", &law);
         }
         if apart[0] {
-            exchange("young-exchanged", "Young's moduli", &|own, other| exchanged(own, other, [true, false]));
+            let law = |b: usize| constants_of(b).map(|(own, other)| isotropic([other[0], own[1]]));
+            exchange("young-exchanged", "Young's moduli", &law);
         }
         if apart == [true; 2] || (apart == [false; 2] && bodies[i].elasticity != bodies[j].elasticity) {
-            exchange("materials-exchanged", "the materials", &|_, other| {
-                Moduli::of_law(scene.kinematics, &other.elasticity)
-            });
+            exchange("materials-exchanged", "the materials", &|b| Some(bodies[other(b)?].elasticity));
         }
     }
     trials

@@ -10,6 +10,7 @@ pub(super) mod local;
 pub(super) mod lumped;
 pub(super) mod material;
 pub(super) mod moved;
+pub(super) mod outline;
 pub(super) mod sampled;
 pub(super) mod shift;
 pub(super) mod single;

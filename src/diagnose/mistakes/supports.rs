@@ -52,7 +52,11 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
         let largest = force.iter().map(|f| f[0].hypot(f[1])).fold(0.0, f64::max);
         let bad = off.iter().filter(|d| d[0].hypot(d[1]) > enough).count();
         let on = &support.on;
-        findings.push(if largest <= NO_FORCE * applied {
+        let scaled = prescribed(solution, nodes);
+        findings.push(if scaled.is_some_and(|s| s.abs() <= SOLVER) {
+            let sentence = format!("the prescribed displacement of {on} is not applied: it is zero there");
+            Finding::new(name("displacement"), Some(0.0), Some(1.0), sentence)
+        } else if largest <= NO_FORCE * applied {
             let sentence = format!("the support on {on} is not applied: no force acts there, and it moves by up to {}", number(depth));
             Finding::new(name("missing"), Some(depth), Some(0.0), sentence)
         } else if let Some(c) = (0..2).find(|c| free_along(*c, &off, &force, enough, NO_FORCE * applied)) {
@@ -62,11 +66,8 @@ pub fn findings(solution: &Solution<'_>) -> Vec<Finding> {
                 number(depth)
             );
             Finding::new(name("missing"), Some(depth), Some(0.0), sentence)
-        } else if let Some(s) = prescribed(solution, nodes) {
-            let sentence = match s.abs() <= SOLVER {
-                true => format!("the prescribed displacement of {on} is not applied: it is zero there"),
-                false => format!("the displacement of {on} is {} times the prescribed one", number(s)),
-            };
+        } else if let Some(s) = scaled {
+            let sentence = format!("the displacement of {on} is {} times the prescribed one", number(s));
             Finding::new(name("displacement"), Some(s), Some(1.0), sentence)
         } else if let Some(stiffness) = spring(&off, &force) {
             let sentence = format!(

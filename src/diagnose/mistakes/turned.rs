@@ -2,6 +2,7 @@
 
 use super::{initial, material, shift};
 use crate::bounds::Sum;
+use crate::compare::forces::cells;
 use crate::compare::forces::functions::Functions;
 use crate::compare::forces::tractions;
 use crate::compare::forces::turned;
@@ -71,6 +72,13 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
         ),
         trial("revolution/weight-of-loads", RIGHT, false, "the radius is left out of the integrals of the loads"),
     ];
+    let bodies = &space.problem().scene.bodies;
+    let pulled = bodies.iter().any(|body| !body.body_force.is_none());
+    let pressed = space.problem().pressed_edges().iter().any(|(_, load)| load.iter().flatten().any(|t| *t != 0.0));
+    if pulled && pressed {
+        trials.push(columns.light_body_forces(&own, &loads[0]));
+    }
+    trials.extend(columns.reduced(&own, pulled));
     trials.extend(shift::trial(space, |u| columns.hoop(u[0])));
     trials
 }
@@ -143,6 +151,52 @@ impl<'a> Columns<'a> {
         rest / self.space.whole()
     }
 
+    /// Body forces without the radius, beside tractions with it.
+    fn light_body_forces(&self, own: &Law<'_>, loads: &[f64]) -> Trial {
+        let [weighted, light] = [true, false].map(|weighted| self.space.column(self.body_forces(weighted)));
+        let stiffness = self.space.column(self.stresses(own, RIGHT));
+        let others: Vec<f64> =
+            stiffness.iter().zip(loads.iter().zip(&weighted)).map(|(k, (all, body))| k - (all - body)).collect();
+        let sentence = "the radius is left out of the integrals of the body forces";
+        let findings = vec![Finding::new("revolution/weight-of-body-forces", None, None, sentence)];
+        Trial { rank: 0, left: self.left(&others, &light, false), findings }
+    }
+
+    /// Quadrilaterals with fewer points than they need, body forces with the same ones or as they are.
+    fn reduced(&self, own: &Law<'_>, pulled: bool) -> Vec<Trial> {
+        let cells = &self.space.solution.candidate.cells;
+        let Some(points) = cells.iter().map(|cell| cells::full(&cell.field)).max() else { return Vec::new() };
+        let fewer = points - 1;
+        let other = Columns { rule: Rule { points: fewer, exact_loads: false, ..self.rule }, ..*self };
+        let [full, reduced] = [self, &other].map(|columns| self.space.column(columns.stresses(own, RIGHT)));
+        let [of_full, of_reduced] = [self, &other].map(|columns| self.space.column(columns.body_forces(true)));
+        let sentence =
+            format!("the quadrilaterals are integrated with {fewer} × {fewer} points in place of {points} × {points}");
+        let trial = |loads: f64| {
+            let change: Vec<f64> =
+                (0..full.len()).map(|i| reduced[i] - full[i] - loads * (of_reduced[i] - of_full[i])).collect();
+            let findings = vec![Finding::new("integration/reduced", None, None, sentence.clone())];
+            Trial { rank: 0, left: self.space.left_with(&change), findings }
+        };
+        if pulled { vec![trial(1.0), trial(0.0)] } else { vec![trial(0.0)] }
+    }
+
+    /// Body forces, with the weight r or its mean.
+    fn body_forces(&self, weighted: bool) -> Vec<[f64; 2]> {
+        let (problem, candidate) = (self.problem(), self.space.solution.candidate);
+        if weighted {
+            return turned::body_forces(problem, candidate, self.rule, |b| &problem.scene.bodies[b].body_force);
+        }
+        let mut loads = vec![[0.0; 2]; self.space.count()];
+        turned::points(problem, candidate, self.rule, |at| {
+            let force = problem.section().force(problem.body_force(at.triangle), at.place);
+            for (&node, (value, _)) in at.nodes.iter().zip(at.shapes) {
+                (0..2).for_each(|c| loads[node][c] += at.weight * self.mean * value * force[c]);
+            }
+        });
+        loads
+    }
+
     /// Nodal forces ∫ s:e(φ) of the stress s that initial strains ask for, of bodies that have a material in `of`.
     fn held(&self, of: impl Fn(usize) -> Option<Material>) -> Vec<[f64; 2]> {
         let known: Vec<Option<Material>> = (0..self.problem().scene.bodies.len()).map(of).collect();
@@ -192,17 +246,11 @@ impl<'a> Columns<'a> {
         if weighted {
             return solution.forces.applied();
         }
-        let mut loads = vec![[0.0; 2]; self.space.count()];
+        let mut loads = self.body_forces(false);
         for (e, traction) in problem.pressed_edges() {
             let own: Vec<[f64; 2]> = traction.iter().map(|t| t.map(|t| self.mean * t)).collect();
             tractions::add(problem, (e, &own), solution.candidate.degree, Functions::Values, &mut loads);
         }
-        turned::points(problem, solution.candidate, self.rule, |at| {
-            let force = problem.section().force(problem.body_force(at.triangle), at.place);
-            for (&node, (value, _)) in at.nodes.iter().zip(at.shapes) {
-                (0..2).for_each(|c| loads[node][c] += at.weight * self.mean * value * force[c]);
-            }
-        });
         loads
     }
 }

@@ -37,6 +37,10 @@ MISTAKES = {
     "held": {"held": True},
     "value": {"moved": 1e-3},
     "exact-loads": {"order_of_loads": 12},
+    "reduced": {"order": 3},
+    "reduced-stiffness": {"order": 3, "order_of_loads": 5},
+    "light": {"body_weighted": False},
+    "part": {"pull": (0.02 / (2 * np.pi), -0.05 / (2 * np.pi))},
 }
 
 
@@ -51,7 +55,7 @@ def mesh(cells, seed, inner, n):
 
 class Body:
     def __init__(self, cells, grid, inner, young=1.0, poisson=POISSON, hoop=1.0, weighted=True, loads_weighted=True,
-                 load=1.0, top=1.0, order=None, order_of_loads=None, pull=(0.02, -0.05), slope=1.0, held=False, moved=0.0):
+                 body_weighted=True, load=1.0, top=1.0, order=None, order_of_loads=None, pull=(0.02, -0.05), slope=1.0, held=False, moved=0.0):
         self.cells, self.grid, self.inner, self.held, self.moved = cells, grid, inner, held, moved
         self.space = skfem.ElementVector(ELEMENTS[cells]())
         self.basis = skfem.Basis(grid, self.space, intorder=order or FULL[cells])
@@ -72,7 +76,7 @@ class Body:
 
         @skfem.LinearForm
         def body(v, w):
-            return load * weight(w, weighted and loads_weighted) * (pull[0] * v.value[0] + pull[1] * v.value[1])
+            return load * weight(w, weighted and loads_weighted and body_weighted) * (pull[0] * v.value[0] + pull[1] * v.value[1])
 
         @skfem.LinearForm
         def outside(v, w):

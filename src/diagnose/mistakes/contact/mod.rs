@@ -4,6 +4,7 @@ mod bound;
 mod penalty;
 mod rubbing;
 mod tangential;
+mod turned;
 mod weak;
 
 use crate::compare::Solution;
@@ -105,8 +106,12 @@ impl<'a> Along<'a> {
             if let Some(penalty) = self.penalty(&carrying) {
                 return Some(self.told_penalty(name("penalty"), &penalty, deepest, energies));
             }
-            let sentence =
-                format!("contact {} penetrates by up to {} at {place}{}", self.name, number(depth), self.turned(depth));
+            let sentence = format!(
+                "contact {} penetrates by up to {} at {place}{}",
+                self.name,
+                number(depth),
+                self.turned(&carrying)
+            );
             return Some(Finding::new(name("penetration"), Some(depth), Some(0.0), sentence));
         }
         if self.solution.is_pushed() {
@@ -148,27 +153,11 @@ impl<'a> Along<'a> {
                 counted(open.len(), "open node"),
                 self.solution.named(self.solution.sites.list[widest].first),
                 number(-self.depth(widest)),
-                self.turned(self.depth(widest))
+                self.turned(&open)
             ),
         };
         let found = self.constant_gap(&open).map(|_| "gap").unwrap_or("open");
         Some(Finding::new(name(found), Some(self.depth(widest)), Some(0.0), sentence))
-    }
-
-    /// Remark on a distance no larger than the square of the displacements over the length of the contact; empty for any other.
-    fn turned(&self, distance: f64) -> String {
-        let ends = self.solution.sites.spans.iter().filter(|span| self.sites.binary_search(&span.ends[0]).is_ok());
-        let length: f64 = ends.map(|span| span.length).sum();
-        let turn = self.solution.largest / length;
-        // A turn of a tenth is no small one, and no program that takes it for one has anything to do with it.
-        if turn < 0.1 && distance.abs() <= turn * self.solution.largest {
-            let square = number(turn * self.solution.largest);
-            return format!(
-                "; that is within {square}, the square of the displacements over the length of the contact, as where contact turns with the \
-                 sides: ask that program for small displacements, or load it less"
-            );
-        }
-        String::new()
     }
 
     /// How many penetrate without any force, where all that do have none: nodes, or Bernstein coefficients of the jump.

@@ -7,6 +7,8 @@ use crate::diagnose::{Energies, Finding};
 
 /// Degrees of the rules by which other programs may integrate a penalty.
 const RULES: [usize; 5] = [0, 2, 4, 6, 30];
+/// Of the largest displacement, what a penalty has to give way by: less is rounding.
+const ROUNDED: f64 = 1e-9;
 /// How well forces have to follow penetrations.
 const FOLLOWS: f64 = 0.1;
 
@@ -56,7 +58,13 @@ impl Along<'_> {
         // Nothing follows a list of zeros.
         let known = kinds.into_iter().filter(|(_, (_, miss))| miss.is_finite());
         let (kind, (stiffness, miss)) = known.min_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
-        (miss <= FOLLOWS && stiffness > 0.0).then_some(Penalty { kind, stiffness })
+        let share = |s: usize| match kind {
+            Kind::Area => thickness * self.solution.sites.list[s].weight,
+            Kind::Node => 1.0,
+        };
+        let gives = carrying.iter().map(|s| self.pressing(*s) / (stiffness * share(*s))).fold(0.0, f64::max);
+        let is_one = miss <= FOLLOWS && stiffness > 0.0 && gives > ROUNDED * self.solution.reference;
+        is_one.then_some(Penalty { kind, stiffness })
     }
 
     /// ∫ [d]₊ φ ds times the thickness at every node of this contact, as a rule for integrands of degree `rule` has it, d the
