@@ -14,6 +14,9 @@ use hypercircle::scene::Kinematics;
 use hypercircle::workbench::stress::SolverElement;
 use hypercircle::workbench::{DisplacementElement, Material, Options, Order, Report, is_property};
 
+/// How exact the entries of an array in single precision are, relative to the largest.
+const SINGLE: f64 = 1e-5;
+
 /// Rows of numbers as a matrix.
 fn matrix(object: &Bound<'_, PyAny>) -> Result<DMatrix<f64>, String> {
     let rows: Vec<Vec<f64>> = object.extract().map_err(|e| format!("a matrix is an array of rows of numbers: {e}"))?;
@@ -150,6 +153,8 @@ pub fn workbench<'py>(
     }
     let made = made.map_err(fault)?;
     let usual = made.precision;
+    let is_single = element.getattr_opt("dtype")?.is_some_and(|kind| kind.to_string() == "float32");
+    let precision = precision.or(is_single.then_some(SINGLE));
     let said = precision.map(hypercircle::workbench::precision).transpose().map_err(fault)?;
     let made = made.with_precision(said.unwrap_or(usual));
     // The formula comes back for the interpreter.

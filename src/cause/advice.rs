@@ -118,6 +118,10 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
              integration rule or an unfinished iteration leaves the rest.",
             "Hand the field in with `--contact weak`, and let that program iterate until its contact forces no longer change.",
         ],
+        (Kind::Contact, "rigid") => [
+            "The two sides share their displacements: the layer is a tie, or its nodes were merged.",
+            "Give each side nodes of its own, and put springs of the stiffness of the scene between them.",
+        ],
         (Kind::Contact | Kind::Support, "stiffness" | "normal" | "tangential") => [
             "The springs are not those of the scene: another stiffness, another direction, or integrated in another way.",
             "Their stiffness is force per area and displacement, not per node. Compare it in both directions, and its unit; ∫ k j φ of a linear edge has \
@@ -212,6 +216,10 @@ pub fn of(kind: Kind, name: &str) -> [&'static str; 2] {
         (Kind::Thickness, _) => [
             "Displacements do not depend on the thickness where it multiplies stiffness and loads alike; energies and forces do.",
             "Multiply energies, loads and reactions by `thickness` of the scene.",
+        ],
+        (Kind::Moved, "rounded") => [
+            "The field is a solution on another mesh than that of the scene, by the digits that were lost.",
+            "Give the scene the mesh that the field was computed on, or write both with all digits.",
         ],
         (Kind::Moved, _) => [
             "The mesh was written after it moved, and the scene was made of it.",

@@ -130,10 +130,7 @@ impl Session {
     fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
         self.progress.phase("writing the report");
         let replaced = report_of_another_command(folder, self.command);
-        report::write(dossier, folder).map_err(|e| {
-            let exit = if e.is_of_the_place() { Exit::BadInput } else { Exit::Failed };
-            CliError::stopped(exit, e.to_string(), "")
-        })?;
+        report::write(dossier, folder)?;
         ci::report(&dossier.report, &self.scene.path);
         if !self.quiet {
             lines(&dossier.report).iter().for_each(|line| say::line(line));

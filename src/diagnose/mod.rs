@@ -182,6 +182,7 @@ pub fn diagnose(solution: &Solution<'_>, energies: Energies) -> Option<Diagnosis
             Err(trials) => {
                 diagnosis.explained = Some(0.0);
                 nearest = choice::nearest(trials);
+                diagnosis.findings.extend(mistakes::moved::rounded(solution));
                 // Forces along contacts tell nothing while most of them belong to something else.
                 if !nearest.is_empty() {
                     diagnosis.findings.retain(|finding| !finding.is_of_contact_forces());

@@ -112,9 +112,9 @@ impl Default for Own {
 
 /// The command-line error of a job.
 pub fn refused(error: JobError) -> CliError {
-    let exit = match &error {
+    let exit = match error {
+        JobError::Report(error) => return error.into(),
         JobError::Write { .. } | JobError::Start { .. } => Exit::Failed,
-        JobError::Report(report::ReportError::Busy { .. } | report::ReportError::Render { .. }) => Exit::Failed,
         _ => Exit::BadInput,
     };
     CliError::stopped(exit, error.to_string(), "")

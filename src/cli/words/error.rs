@@ -8,6 +8,7 @@ use miette::{Diagnostic, LabeledSpan, SourceCode};
 
 use super::exit::Exit;
 use super::say::shown;
+use crate::report::ReportError;
 use crate::scene::SceneError;
 
 /// An error to show, with its exit code.
@@ -54,6 +55,14 @@ impl CliError {
             CliError::Scene(_) => Exit::BadInput,
             CliError::Stopped { exit, .. } => *exit,
         }
+    }
+}
+
+impl From<ReportError> for CliError {
+    /// A report that finds no place: bad input where there can be none at the place that was named.
+    fn from(error: ReportError) -> Self {
+        let exit = if error.is_of_the_place() { Exit::BadInput } else { Exit::Failed };
+        CliError::stopped(exit, error.to_string(), "")
     }
 }
 

@@ -43,6 +43,8 @@ pub struct Numbering {
     pub files: Vec<(String, [usize; 2])>,
     /// True if the file has the triangles of [`Problem::uncut`], from before contact cut some of them.
     pub uncut: bool,
+    /// How far points of the file are from the vertices that they are, where that is more than round-off; else zero.
+    pub off: f64,
 }
 
 impl Numbering {

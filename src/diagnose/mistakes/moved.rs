@@ -1,9 +1,10 @@
 //! Points that the displacement has moved already: the mesh is x + u, and its solution belongs to x.
 
 use crate::bounds::{Nodes, holds};
-use crate::compare::NodalForces;
 use crate::compare::solution::Sites;
+use crate::compare::{NodalForces, Solution};
 use crate::diagnose::space::Space;
+use crate::diagnose::words::number;
 use crate::diagnose::{Finding, Trial};
 use crate::problem::{Direction, Problem};
 
@@ -39,4 +40,20 @@ fn moved_back(problem: &Problem, u: &[[f64; 2]]) -> Option<Problem> {
         }
     }
     Some(problem)
+}
+
+/// The residual that coordinates leave which are off by δ, in parts of δ/h with the shortest edge h: no more than that.
+const LEAVES: f64 = 20.0;
+
+/// Coordinates of the file that were rounded, where that can leave as much as is left.
+pub fn rounded(solution: &Solution<'_>) -> Option<Finding> {
+    let mesh = &solution.problem.mesh;
+    let off = solution.candidate.numbering.as_ref().map_or(0.0, |numbering| numbering.off);
+    let shortest = (0..mesh.edges.len()).map(|e| mesh.edge_frame(e).0).fold(f64::INFINITY, f64::min);
+    let sentence = format!(
+        "points of the file are up to {} away from the vertices of the scene's mesh, as if coordinates were rounded, and that alone can leave as much",
+        number(off)
+    );
+    (off > 0.0 && solution.residual() <= LEAVES * off / shortest)
+        .then(|| Finding::new("points/rounded", Some(off), Some(0.0), sentence))
 }

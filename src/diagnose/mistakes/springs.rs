@@ -1,6 +1,10 @@
 //! Wrong springs, elastic layers and elastic contact.
 
+use std::collections::BTreeSet;
+
+use crate::compare::forces::functions::nodes_along;
 use crate::compare::forces::springs::{Part, spring_forces};
+use crate::compare::solution::SOLVER;
 use crate::diagnose::fit::Terms;
 use crate::diagnose::space::Space;
 use crate::diagnose::words::{factor, near, number};
@@ -31,8 +35,51 @@ impl Called {
 /// Gaps of elastic contact that are mistaken most often, as factors on those of the scene.
 const GAPS: [(f64, &str); 3] = [(0.0, "is ignored"), (2.0, "counts twice"), (-1.0, "has the opposite sign")];
 
-/// Elastic contact with another gap.
+/// Nodes that have to move together for a layer to be rigid.
+const TOGETHER: usize = 3;
+/// The part of the forces on two sides, as their squares, that they may leave together.
+const LEFT: f64 = 1e-6;
+
+/// Layers whose sides move together, under forces that one exerts on the other.
+fn rigid(space: &Space<'_>, bed: &Bed) -> Option<Trial> {
+    let (mesh, solution) = (&space.problem().mesh, space.solution);
+    let degree = solution.candidate.degree.min(2);
+    let edges = bed.pairs.iter().filter_map(|pair| Some((pair.edge, pair.opposite?)));
+    let pairs: BTreeSet<(usize, usize)> = edges
+        .flat_map(|(first, second)| {
+            let along = |e: usize| nodes_along(mesh, e, degree).collect::<Vec<usize>>();
+            along(first).into_iter().zip(along(second).into_iter().rev()).collect::<Vec<_>>()
+        })
+        .collect();
+    let enough = (SOLVER + solution.candidate.precision) * solution.reference;
+    let value = |node: usize| solution.candidate.value(node);
+    let apart = |(a, b): &(usize, usize)| (0..2).any(|c| (value(*a)[c] - value(*b)[c]).abs() > enough);
+    if pairs.len() < TOGETHER || pairs.iter().any(apart) {
+        return None;
+    }
+    let square = |f: [f64; 2]| f[0] * f[0] + f[1] * f[1];
+    let (mut both, mut sum, mut inside) = (0.0, 0.0, 0.0);
+    for (a, b) in pairs {
+        let [own, other] = [a, b].map(|node| solution.rest[node]);
+        both += square(own) + square(other);
+        sum += square([own[0] + other[0], own[1] + other[1]]);
+        inside += space.square_at(a) + space.square_at(b);
+    }
+    let Called { name, what } = Called::of(bed);
+    let finding = Finding::new(
+        format!("{name}/rigid"),
+        None,
+        None,
+        format!("the sides of {what} move together: nothing gives way between them"),
+    );
+    let left = (1.0 - inside / space.square).max(0.0);
+    (sum <= LEFT * both).then(|| Trial { rank: 1, left, findings: vec![finding] })
+}
+
+/// Rigid layers, and elastic contact with another gap.
 pub fn trials(space: &Space<'_>) -> Vec<Trial> {
+    let layers = space.problem().beds.iter().filter(|bed| bed.is_layer());
+    let rigid: Vec<Trial> = layers.filter_map(|bed| rigid(space, bed)).collect();
     let beds = space.problem().beds.iter();
     let elastic = beds.filter(|bed| bed.pairs.iter().any(|pair| pair.contact.is_some_and(has_gap)));
     let of_bed = |bed: &Bed| -> Vec<Trial> {
@@ -47,7 +94,7 @@ pub fn trials(space: &Space<'_>) -> Vec<Trial> {
         };
         GAPS.map(other).into()
     };
-    elastic.flat_map(of_bed).collect()
+    elastic.flat_map(of_bed).chain(rigid).collect()
 }
 
 fn has_gap(contact: OneSided) -> bool {

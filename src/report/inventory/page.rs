@@ -30,7 +30,7 @@ pub fn page(inventory: &Inventory, scene: &str) -> String {
                 (table(&format!("curves{i}"), title, list.iter().map(|c| (curve_told(c, of), inventory.curve_lines(c)))))
             }
             (table("outline", "Outline by line and circle",
-                inventory.outline.iter().map(|p| (format!("{}: {}", p.name, piece_told(p)), inventory.piece_lines(p)))))
+                inventory.outline.iter().map(|p| (format!("{}: {}", p.name, piece_told(p, inventory)), inventory.piece_lines(p)))))
             section #scene { h2 { "A scene to start from" } div.scroll { pre { (scene.replace(|c: char| c.is_control() && c != '\n', " ")) } } }
         }
     };

@@ -62,6 +62,7 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
         triangles: triangles.iter().map(|place| Some(cell(place))).collect(),
         files: field.files.clone(),
         uncut,
+        off: 0.0,
     };
     let mut carried = Carried {
         field,
@@ -96,7 +97,8 @@ pub(super) fn onto(field: &ForeignField, problem: &Problem) -> Result<Matched, F
         }
     }
     carried.number_inside(&cells);
-    let Carried { vertex, middle, numbering, off, curved, .. } = carried;
+    let Carried { vertex, middle, mut numbering, off, curved, .. } = carried;
+    numbering.off = off.unwrap_or(0.0);
     let inserted = numbering.nodes[..mesh.points.len()].iter().filter(|n| n.is_none()).count();
     // Every triangle has a place, and every vertex and edge a triangle.
     let all = |values: Vec<Option<[f64; 2]>>| values.into_iter().map(Option::unwrap_or_default).collect::<Vec<_>>();

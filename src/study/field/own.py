@@ -18,7 +18,8 @@ def own_fields(source):
 
     found = read_own(source, reader)
     if not found.fields:
-        sys.exit("it has no displacement at its nodes: have it written there (in CalculiX with *NODE FILE, in Code_Aster as DEPL)")
+        how = {"CalculiX": "in CalculiX with *NODE FILE and U", "MED": "in Code_Aster as DEPL"}.get(found.program, "as a nodal variable of two or three components")
+        sys.exit(f"it has no displacement at its nodes: have it written there ({how})")
     blocks = {}
     for shape, nodes, _ in found.cells:
         kind = OWN_CELLS.get((shape, len(nodes)), shape)

@@ -49,7 +49,7 @@ impl Along<'_> {
         let factor = product / square;
         let miss: f64 = pairs.iter().map(|(found, expected)| (found - factor * expected).powi(2)).sum();
         if pairs.len() > 2 && (FACTORS[0]..=FACTORS[1]).contains(&factor) && miss.sqrt() <= FOLLOWS * size.sqrt() {
-            return "; that is what contact on the sides as they have moved leaves: ask that program for small displacements, or load it less"
+            return "; that is what is left where contact turns with the sides: ask that program for small displacements, or load it less"
                 .to_string();
         }
         String::new()
