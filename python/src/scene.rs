@@ -16,13 +16,13 @@ use crate::problem::{body_entry, list, problem_entry};
 use crate::solution::Solution;
 use hypercircle::cli::CliError;
 use hypercircle::cli::commands::solve::{Args, solved};
+use hypercircle::cli::given::options::MOST_REFINEMENTS;
 use hypercircle::cli::session::Session;
 use hypercircle::element::{Elements, MAX_DEGREE};
 use hypercircle::problem::{Problem, ProblemError};
 use hypercircle::scene;
 
-/// How often a mesh is refined at most, as by the command line, and its triangles then.
-const MOST_REFINEMENTS: i64 = 12;
+/// Triangles of a mesh that is handed over, at most.
 const MOST_TRIANGLES: usize = 20_000_000;
 
 /// A scene: bodies, supports, tractions, contacts, and what it is solved for. `Scene(path)` reads a TOML file,
@@ -117,18 +117,17 @@ impl Scene {
     /// `thickness`.
     #[pyo3(signature = (refine = 0))]
     fn problem<'py>(&self, py: Python<'py>, refine: i64) -> PyResult<Bound<'py, PyDict>> {
-        if !(0..=MOST_REFINEMENTS).contains(&refine) {
-            return Err(fault(format!("refine = {refine} is not in 0..={MOST_REFINEMENTS}")));
-        }
+        let times = u32::try_from(refine).ok().filter(|times| *times <= MOST_REFINEMENTS);
+        let times = times.ok_or_else(|| fault(format!("refine = {refine} is not in 0..={MOST_REFINEMENTS}")))?;
         let refused = |error: ProblemError| fault(format!("{}: {error}", self.of.path.display()));
         let coarse = aside(py, 1, || Problem::load((*self.of).clone()))?.map_err(refused)?;
-        let triangles = coarse.mesh.triangles.len() * 4_usize.pow(refine as u32);
+        let triangles = coarse.mesh.triangles.len() * 4_usize.pow(times);
         if triangles > MOST_TRIANGLES {
             return Err(fault(format!(
                 "refine = {refine} makes {triangles} triangles, more than {MOST_TRIANGLES}; refine less"
             )));
         }
-        let made = aside(py, 1, || coarse.refine_uniform(refine as usize))?;
+        let made = aside(py, 1, || coarse.refine_uniform(times as usize))?;
         problem_entry(py, made.map_err(refused)?)
     }
 

@@ -27,6 +27,11 @@ fn matrix(object: &Bound<'_, PyAny>) -> Result<DMatrix<f64>, String> {
     }
 }
 
+/// Raises what ended a formula, if anything did.
+fn raised(ended: &Mutex<Option<PyErr>>) -> PyResult<()> {
+    ended.lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
+}
+
 /// K with two rows a node, by the Python callable `stiffness(nodes, young, poisson)`.
 fn called(
     stiffness: &Py<PyAny>,
@@ -148,9 +153,7 @@ pub fn workbench<'py>(
         }
         None => matrix(element).and_then(|k| DisplacementElement::of_matrix(name, &k, nodes, order, given)),
     };
-    if let Some(error) = ended.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        return Err(error);
-    }
+    raised(&ended)?;
     let made = made.map_err(fault)?;
     let usual = made.precision;
     let is_single = element.getattr_opt("dtype")?.is_some_and(|kind| kind.to_string() == "float32");
@@ -159,9 +162,7 @@ pub fn workbench<'py>(
     let made = made.with_precision(said.unwrap_or(usual));
     // The formula comes back for the interpreter.
     let report = py.detach(move || Report::of_displacement(&made, &options));
-    if let Some(error) = ended.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        return Err(error);
-    }
+    raised(&ended)?;
     written(py, &report, out)
 }
 

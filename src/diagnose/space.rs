@@ -235,8 +235,8 @@ impl<'a> Space<'a> {
     pub fn with_materials(&self, other: impl Fn(usize) -> Option<Material>) -> Vec<f64> {
         let (problem, solution) = (self.problem(), self.solution);
         let (scene, materials) = (&problem.scene, problem.materials());
+        let others: Vec<Option<Material>> = (0..scene.bodies.len()).map(other).collect();
         if let Some(rule) = solution.rule {
-            let others: Vec<Option<Material>> = (0..scene.bodies.len()).map(other).collect();
             return self.column(turned::stress_forces(
                 problem,
                 solution.candidate,
@@ -251,11 +251,11 @@ impl<'a> Space<'a> {
         }
         let mut change = self.stiffness(|b| {
             let own = Moduli::of_body(problem, &scene.bodies[b]);
-            other(b).map(|material| Moduli::of_material(&material).less(own))
+            others[b].as_ref().map(|material| Moduli::of_material(material).less(own))
         });
         if scene.bodies.iter().any(|body| !body.initial.is_none()) {
             let forces = self.forces_of(|b, x| {
-                let material = other(b)?;
+                let material = others[b].as_ref()?;
                 let (other, own) = (material.initial().at(x), materials[b].initial().at(x));
                 Some(material.stress([0, 1, 2].map(|c| own[c] - other[c])))
             });
@@ -275,6 +275,14 @@ impl<'a> Space<'a> {
 
     /// Nodal forces ∫ s:e(φ) of a stress that is affine in each body.
     pub fn forces_of(&self, stress: impl Fn(usize, [f64; 2]) -> Option<[f64; 3]>) -> Vec<[f64; 2]> {
+        self.forces_at(|body, x, _| stress(body, x))
+    }
+
+    /// As [`Self::forces_of`], with the quadrilateral that a point lies in.
+    pub fn forces_at(
+        &self,
+        stress: impl Fn(usize, [f64; 2], Option<&Quadrilateral>) -> Option<[f64; 3]>,
+    ) -> Vec<[f64; 2]> {
         let problem = self.problem();
         let mut forces = vec![[0.0; 2]; self.count()];
         let mut add = |node: usize, weight: f64, d: [f64; 2], s: [f64; 3]| {
@@ -283,14 +291,14 @@ impl<'a> Space<'a> {
         };
         for (t, body) in problem.mesh.body.iter().enumerate() {
             let corners = problem.mesh.corners(t);
-            if stress(*body, corners[0]).is_none() {
+            if stress(*body, corners[0], None).is_none() {
                 continue;
             }
             let Some(cell) = self.counted(t) else { continue };
             if let Some(cell) = cell {
                 for (at, weight) in cells::rule(self.solution.points.unwrap_or(cells::full(&cell.field))) {
                     let (gradients, _) = cell.field.gradients(at);
-                    let s = stress(*body, cell.field.position(at)).unwrap_or_default();
+                    let s = stress(*body, cell.field.position(at), Some(&cell.field)).unwrap_or_default();
                     let weight = problem.scene.thickness * weight;
                     cell.nodes.iter().zip(gradients).for_each(|(node, d)| add(*node, weight, d, s));
                 }
@@ -302,27 +310,8 @@ impl<'a> Space<'a> {
             for at in 0..3 {
                 let shape = if nodes.len() == 6 { shape_gradients(&g, at).to_vec() } else { g.to_vec() };
                 let (p, q) = (corners[(at + 1) % 3], corners[(at + 2) % 3]);
-                let s = stress(*body, [0, 1].map(|c| 0.5 * (p[c] + q[c]))).unwrap_or_default();
+                let s = stress(*body, [0, 1].map(|c| 0.5 * (p[c] + q[c])), None).unwrap_or_default();
                 nodes.iter().zip(shape).for_each(|(node, d)| add(*node, weight, d, s));
-            }
-        }
-        forces
-    }
-
-    /// Nodal forces ∫ s:e(φ) of a stress on the quadrilaterals alone, by body, place and cell.
-    pub fn forces_on_cells(&self, stress: impl Fn(usize, [f64; 2], &Quadrilateral) -> [f64; 3]) -> Vec<[f64; 2]> {
-        let problem = self.problem();
-        let mut forces = vec![[0.0; 2]; self.count()];
-        for cell in &self.solution.candidate.cells {
-            let body = cell.triangles.first().map_or(0, |t| problem.mesh.body[*t]);
-            for (at, weight) in cells::rule(self.solution.points.unwrap_or(cells::full(&cell.field))) {
-                let (gradients, _) = cell.field.gradients(at);
-                let s = stress(body, cell.field.position(at), &cell.field);
-                let weight = problem.scene.thickness * weight;
-                for (node, d) in cell.nodes.iter().zip(gradients) {
-                    forces[*node][0] += weight * (d[0] * s[0] + d[1] * s[2]);
-                    forces[*node][1] += weight * (d[0] * s[2] + d[1] * s[1]);
-                }
             }
         }
         forces

@@ -100,9 +100,9 @@ impl Simplified {
         let mut rest = Sum::default();
         match (&functional.region, functional.local.as_deref()) {
             (Some((chi, cuts)), _) => {
+                let materials = problem.materials();
                 for cut in cuts {
-                    let material = problem.materials()[problem.mesh.body[cut.triangle]];
-                    let square = material.strain_product(*chi, *chi);
+                    let square = materials[problem.mesh.body[cut.triangle]].strain_product(*chi, *chi);
                     rest.add(problem.mesh.area(cut.triangle) * cut.part * (1.0 - cut.part) * square);
                 }
             }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Subcommand, value_parser};
 
 use crate::cli::given::methods::known;
-use crate::cli::given::options::{MemoryOptions, positive};
+use crate::cli::given::options::{MOST_REFINEMENTS, MemoryOptions, positive};
 use crate::cli::given::threads;
 use crate::cli::{CliError, Exit};
 use crate::measure::{Clock, Method, Settings, measure};
@@ -54,7 +54,7 @@ pub struct Options {
     #[arg(long, required = true, value_parser = known)]
     pub method: Vec<Method>,
     /// Uniform refinements
-    #[arg(long, default_value_t = 0, value_parser = value_parser!(u32).range(0..=12))]
+    #[arg(long, default_value_t = 0, value_parser = value_parser!(u32).range(0..=i64::from(MOST_REFINEMENTS)))]
     pub refine: u32,
     /// Threads
     #[arg(long, default_value_t = 1, value_parser = value_parser!(u32).range(1..=1024))]

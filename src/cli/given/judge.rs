@@ -5,7 +5,7 @@ use crate::cli::commands::job::JobOptions;
 use crate::cli::words::say;
 use crate::cli::{CliError, Exit};
 use crate::compare::name::{FREE_BOUND, GIVEN, WIDTH, of_quantity};
-use crate::compare::{Allowances, Check, Comparison, names_of_checks};
+use crate::compare::{Allowances, Check, Comparison, Name, names_of_checks};
 use crate::report::BaselineRow;
 use crate::scene::{Contact, Scene};
 use crate::study::{Accepted, Answer, Baseline, BaselineError, Certified, Signature, baseline_checks, today};
@@ -60,7 +60,7 @@ impl JudgeOptions {
         let allow = self.allowances();
         // Where no scene can be read there is nothing to hold a name against.
         let foreign = if names.is_empty() { Vec::new() } else { allow.foreign(&names) };
-        match foreign.into_iter().find(|name| !name.starts_with("baseline/")) {
+        match foreign.into_iter().find(|name| !matches!(Name::read(name), Name::Baseline(_))) {
             None => Ok(()),
             Some(name) => Err(CliError::stopped(
                 Exit::BadInput,
@@ -82,7 +82,7 @@ impl JudgeOptions {
         job: &JobOptions,
     ) -> Result<(), CliError> {
         let unknown = allow.unknown(checks);
-        let meant: Vec<&&str> = unknown.iter().filter(|name| !name.starts_with("baseline/")).collect();
+        let meant: Vec<&&str> = unknown.iter().filter(|name| !matches!(Name::read(name), Name::Baseline(_))).collect();
         if incomplete || meant.is_empty() || job.is_part() {
             return Ok(());
         }

@@ -15,7 +15,7 @@ use crate::scene::Scene;
 use crate::study::{Adapt, GivenValue, Wanted};
 
 /// Uniform refinements beyond which no machine follows: each multiplies the triangles by four.
-const MOST_REFINEMENTS: i64 = 12;
+pub const MOST_REFINEMENTS: u32 = 12;
 
 /// What runs on other processors, or other machines.
 #[derive(Debug, Clone, Copy, Args)]
@@ -57,7 +57,7 @@ pub struct SolveOptions {
     #[arg(skip)]
     pub elements: Option<Elements>,
     /// Refine the mesh uniformly N times before solving
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=MOST_REFINEMENTS))]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = value_parser!(u32).range(0..=i64::from(MOST_REFINEMENTS)))]
     pub refine: u32,
     /// Refine adaptively until the guaranteed relative energy-norm error is below X
     #[arg(long, value_name = "X", value_parser = tolerance)]

@@ -31,6 +31,13 @@ pub fn full(cell: &Quadrilateral) -> usize {
     if cell.nodes() == 4 { 2 } else { 3 }
 }
 
+/// Values and gradients of the functions of the nodes at a point of the unit square, and the determinant there.
+pub fn shapes(cell: &Quadrilateral, at: [f64; 2]) -> (Vec<(f64, [f64; 2])>, f64) {
+    let (gradients, determinant) = cell.gradients(at);
+    let functions = cell.shapes(at).into_iter().zip(gradients);
+    (functions.map(|(value, d)| (value, d.map(|d| d / determinant))).collect(), determinant)
+}
+
 /// Points in each direction of the rules that a program may have used for `candidate`: none where there is no quadrilateral.
 pub fn rules(candidate: &Candidate) -> Vec<Option<usize>> {
     match candidate.cells.iter().map(|cell| full(&cell.field)).max() {

@@ -208,9 +208,7 @@ pub fn points_of(
         let Some(&t) = cell.triangles.first().filter(|t| counted(**t)) else { continue };
         let values = cell.values(candidate);
         for (at, weight) in cells::rule(by.points) {
-            let (gradients, determinant) = cell.field.gradients(at);
-            let functions = cell.field.shapes(at).into_iter().zip(gradients);
-            let shapes: Vec<_> = functions.map(|(w, g)| (w, g.map(|g| g / determinant))).collect();
+            let (shapes, determinant) = cells::shapes(&cell.field, at);
             let place = cell.field.point(at);
             let (radius, weight) = (section.weight(place), thickness * weight * determinant);
             let body = mesh.body[t];

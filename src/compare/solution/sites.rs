@@ -47,7 +47,8 @@ impl Site {
         self.tangent.map_or(0.0, |t| self.jump(t, value))
     }
 
-    fn jump(&self, direction: [f64; 2], value: impl Fn(usize) -> [f64; 2]) -> f64 {
+    /// The component of v' − v'' along a direction.
+    pub fn jump(&self, direction: [f64; 2], value: impl Fn(usize) -> [f64; 2]) -> f64 {
         dot(value(self.first), direction) - self.second.map_or(0.0, |s| dot(value(s), direction))
     }
 

@@ -5,7 +5,7 @@ use crate::diagnose::space::Space;
 use crate::diagnose::words::{factor, near, number};
 use crate::diagnose::{Finding, Trial};
 use crate::elasticity::Initial;
-use crate::element::Material;
+use crate::element::{Material, Quadrilateral};
 use crate::scene::{Body, Kinematics};
 
 /// Temperatures and initial stresses that are off by a factor, body by body and all together.
@@ -151,9 +151,9 @@ pub fn in_the_mean(space: &Space<'_>) -> Option<Trial> {
     }
     let materials = problem.materials();
     let [exact, mean] = [false, true].map(|mean| {
-        space.forces_on_cells(|b, x, cell| {
-            let middle = [0, 1].map(|c| cell.corners().iter().map(|p| p[c]).sum::<f64>() / 4.0);
-            materials[b].held_back(if mean { middle } else { x })
+        space.forces_at(|b, x, cell| {
+            let middle = |cell: &Quadrilateral| [0, 1].map(|c| cell.corners().iter().map(|p| p[c]).sum::<f64>() / 4.0);
+            Some(materials[b].held_back(cell.filter(|_| mean).map_or(x, middle)))
         })
     });
     let change: Vec<f64> = space.column(mean).iter().zip(space.column(exact)).map(|(m, e)| e - m).collect();

@@ -95,14 +95,9 @@ impl Layer {
             let Some(cell) = space.counted(t) else { continue };
             if let Some(cell) = cell {
                 for (at, weight) in cells::rule(of_cells) {
-                    let (gradients, determinant) = cell.field.gradients(at);
-                    let functions = cell.field.shapes(at).into_iter().zip(gradients);
-                    let shapes: Vec<_> = cell
-                        .nodes
-                        .iter()
-                        .zip(functions)
-                        .map(|(node, (value, d))| (*node, value, d.map(|d| d / determinant)))
-                        .collect();
+                    let (functions, determinant) = cells::shapes(&cell.field, at);
+                    let shapes: Vec<_> =
+                        cell.nodes.iter().zip(functions).map(|(node, (value, d))| (*node, value, d)).collect();
                     let weight = problem.scene.thickness * weight * determinant;
                     points.push(Point { weight, lambda, mu, strain: strain_of(&shapes), shapes });
                 }

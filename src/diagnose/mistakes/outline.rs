@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::bounds::Hold;
-use crate::compare::forces::functions::Functions;
+use crate::compare::forces::functions::{Functions, nodes_along};
 use crate::compare::forces::tractions;
 use crate::compare::solution::SOLVER;
 use crate::diagnose::fit::Terms;
@@ -39,7 +39,7 @@ pub fn trials<'a>(space: &'a Space<'a>, terms: &mut Terms<'a>) -> Vec<Trial> {
         return Vec::new();
     }
     let mut trials = Vec::new();
-    for side in sides(space) {
+    for side in sides(space).into_iter().filter(|side| is_acted_on(space, side)) {
         for side in [acted_on(space, &side), Some(side)].into_iter().flatten() {
             loads(space, &side, terms);
             springs(space, &side, terms);
@@ -90,13 +90,21 @@ fn sides(space: &Space<'_>) -> Vec<Side> {
     groups.into_iter().map(|edges| called(space, edges)).collect()
 }
 
+fn nodes_of<'a>(space: &Space<'a>, e: usize) -> impl Iterator<Item = usize> + use<'a> {
+    nodes_along(&space.problem().mesh, e, space.solution.candidate.degree)
+}
+
+/// True if any of the residual is on a side: elsewhere nothing there explains it.
+fn is_acted_on(space: &Space<'_>, side: &Side) -> bool {
+    let nodes: BTreeSet<usize> = side.edges.iter().flat_map(|e| nodes_of(space, *e)).collect();
+    nodes.into_iter().map(|node| space.square_at(node)).sum::<f64>() > LEFT * space.square
+}
+
 /// The part of a side on which forces act; `None` where that is all or nothing of it.
 fn acted_on(space: &Space<'_>, side: &Side) -> Option<Side> {
-    let mesh = &space.problem().mesh;
     let is_acted_on = |e: &usize| {
-        let nodes = mesh.edges[*e].vertices.into_iter().chain([mesh.points.len() + e]).filter(|n| *n < space.count());
         // What a support takes shows nothing.
-        let free: Vec<usize> = nodes.filter(|n| space.solution.hold(*n) == Hold::Free).collect();
+        let free: Vec<usize> = nodes_of(space, *e).filter(|n| space.solution.hold(*n) == Hold::Free).collect();
         !free.is_empty() && free.iter().all(|n| space.square_at(*n) > LEFT * space.square)
     };
     let edges: Vec<usize> = side.edges.iter().copied().filter(is_acted_on).collect();
@@ -204,13 +212,11 @@ fn springs<'a>(space: &'a Space<'a>, side: &Side, terms: &mut Terms<'a>) {
 /// A side that stands still, or is pushed where it does, under forces of which the scene says nothing.
 fn held(space: &Space<'_>, side: &Side) -> Option<Trial> {
     let (mesh, solution) = (&space.problem().mesh, space.solution);
-    let vertices = mesh.points.len();
     let enough = (SOLVER + solution.candidate.precision) * solution.reference;
     let mut nodes: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
     for e in &side.edges {
         let n = mesh.edge_frame(*e).1;
-        let own = mesh.edges[*e].vertices.into_iter().chain([vertices + e]).filter(|n| *n < space.count());
-        nodes.extend(own.map(|node| (node, n)));
+        nodes.extend(nodes_of(space, *e).map(|node| (node, n)));
     }
     let straight =
         nodes.values().next().is_some_and(|m| nodes.values().all(|n| n[0] * m[0] + n[1] * m[1] > 1.0 - ALONG));

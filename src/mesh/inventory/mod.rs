@@ -135,6 +135,16 @@ impl Inventory {
         })
     }
 
+    /// The names that the file has for edges of a piece of the outline, and whether one of them has all of it.
+    pub fn names_on(&self, piece: &Piece) -> (Vec<&str>, bool) {
+        let own: HashSet<Pair> = piece.edges.iter().map(|[a, b]| pair(*a, *b)).collect();
+        let on = |curve: &Curve| curve.on_outline.iter().filter(|[a, b]| own.contains(&pair(*a, *b))).count();
+        let curves = self.boundaries.iter().chain(&self.surfaces).chain(&self.node_sets);
+        let found: Vec<(&Curve, usize)> = curves.map(|curve| (curve, on(curve))).filter(|(_, n)| *n > 0).collect();
+        let names = found.iter().map(|(curve, _)| curve.name.as_str()).collect();
+        (names, found.iter().any(|(_, n)| *n == own.len()))
+    }
+
     /// The lines of a table `[bodies.NAME]` that choose the cells of a body, without its material.
     pub fn body_lines(&self, region: &Region) -> Vec<String> {
         let mut lines = vec![format!("[bodies.{}]", toml_key(&region.body))];

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 
 use crate::compare::Name;
+use crate::compare::name::{OfField, OfRun};
 use crate::report::text::number::clean;
 use crate::report::{Check, Report};
 
@@ -17,8 +18,7 @@ pub(super) fn row(report: &Report, check: &Check) -> String {
 
 /// The id of the picture that shows what a check is about; `None` where there is none.
 pub(super) fn picture(report: &Report, check: &Check) -> Option<String> {
-    let name = check.name.as_str();
-    let read = Name::read(name);
+    let read = Name::read(&check.name);
     if let Some(i) = report.contact.iter().position(|contact| Some(contact.name.as_str()) == read.contact()) {
         return Some(format!("pressure-{i}"));
     }
@@ -26,12 +26,21 @@ pub(super) fn picture(report: &Report, check: &Check) -> Option<String> {
         let own = report.quantities.iter().position(|own| own.name == quantity);
         return own.map(|i| format!("quantity-{i}"));
     }
-    let energy = report.energy.is_some();
-    match name.split('/').next().unwrap_or(name) {
-        "energy" | "bracket" | "certified" => energy.then(|| "bracket".to_string()),
-        "primal" | "stress" | "solution" | "dual" => report.stress.as_ref().map(|_| "map".to_string()),
-        "admissible" => Some("shapes".to_string()),
-        _ => None,
+    use OfField::{
+        Admissible, Coulomb, EnergyError, Equilibrium, FrictionForce, GapTwoWays, Identity, LowerBelow, Reactions,
+        Recomputed, Strain, StressDifference,
+    };
+    let bracket = || report.energy.as_ref().map(|_| "bracket".to_string());
+    let map = || report.stress.as_ref().map(|_| "map".to_string());
+    match read {
+        Name::Run(OfRun::Sharpness | OfRun::Tolerance) | Name::Order(..) => bracket(),
+        Name::Field(Coulomb | EnergyError | GapTwoWays | Identity | LowerBelow | Recomputed | Strain, _) => bracket(),
+        Name::Run(_) | Name::SolutionContact(..) => map(),
+        Name::Field(Equilibrium | Reactions | StressDifference, _) => map(),
+        Name::Field(Admissible, _) => Some("shapes".to_string()),
+        Name::Field(FrictionForce, _) | Name::Contact(..) | Name::Quantity(..) | Name::Baseline(_) | Name::Other => {
+            None
+        }
     }
 }
 

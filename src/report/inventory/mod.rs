@@ -2,8 +2,6 @@
 
 mod page;
 
-use std::collections::HashSet;
-
 pub use page::page;
 
 use super::text::number::significant;
@@ -79,16 +77,6 @@ fn curve_told(curve: &Curve, of: &str) -> String {
     }
 }
 
-/// The names that a file has for edges of a piece, and whether one of them has all of it.
-fn names_on(piece: &Piece, inventory: &Inventory) -> (Vec<String>, bool) {
-    let sorted = |[a, b]: [usize; 2]| [a.min(b), a.max(b)];
-    let own: HashSet<[usize; 2]> = piece.edges.iter().map(|e| sorted(*e)).collect();
-    let curves = inventory.boundaries.iter().chain(&inventory.surfaces).chain(&inventory.node_sets);
-    let on = |curve: &Curve| curve.on_outline.iter().filter(|e| own.contains(&sorted(**e))).count();
-    let found: Vec<(&Curve, usize)> = curves.map(|curve| (curve, on(curve))).filter(|(_, count)| *count > 0).collect();
-    (found.iter().map(|(curve, _)| curve.name.clone()).collect(), found.iter().any(|(_, count)| *count == own.len()))
-}
-
 fn piece_told(piece: &Piece, inventory: &Inventory) -> String {
     let kind = match piece.shape {
         Shape::Line(_) => "line",
@@ -96,7 +84,7 @@ fn piece_told(piece: &Piece, inventory: &Inventory) -> String {
         Shape::Curve(_) => "curve",
     };
     let mut told = format!("{kind}: {}, length {}", counted(piece.edges.len(), "edge"), significant(piece.length, 6));
-    match names_on(piece, inventory) {
+    match inventory.names_on(piece) {
         (names, _) if names.is_empty() => {}
         (names, true) => told += &format!("; in the file {}", names.join(", ")),
         (names, false) => told += &format!("; in the file in part {}", names.join(", ")),

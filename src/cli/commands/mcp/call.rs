@@ -12,7 +12,7 @@ use super::inside;
 use crate::cli::commands::certify::{judged, read, stress_side};
 use crate::cli::commands::{certify, solve, verify};
 use crate::cli::conclude::Particulars;
-use crate::cli::given::options::{Limits, NamedTolerance, SolveOptions, as_tolerance};
+use crate::cli::given::options::{Limits, MOST_REFINEMENTS, NamedTolerance, SolveOptions, as_tolerance};
 use crate::cli::given::threads;
 use crate::cli::session::{Session, refuse_unknown};
 use crate::cli::{CliError, Exit, options_of};
@@ -24,8 +24,6 @@ use crate::workbench::{self, DisplacementElement, Material, Options, Order, SHIP
 
 /// Part of the time of a call after which no finer mesh is begun: what is there then has to be told.
 const REFINING: f64 = 0.6;
-/// Uniform refinements that a call may ask for.
-const MOST_REFINEMENTS: u32 = 12;
 
 /// A call, as the server hands it to the process that answers it.
 #[derive(Debug, Clone, Serialize, Deserialize)]

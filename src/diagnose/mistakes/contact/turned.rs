@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Along;
+use crate::vector::dot;
 
 /// How well distances have to follow what moved sides leave, and factors between which they may.
 const FOLLOWS: f64 = 0.4;
@@ -23,8 +24,7 @@ impl Along<'_> {
             let [p, q] = span.ends.map(|site| solution.place(sites[site].first));
             let height = |site: usize| {
                 let site = &sites[site];
-                let other = site.second.map_or([0.0; 2], value);
-                other[0] * site.normal[0] + other[1] * site.normal[1] + site.gap
+                site.second.map_or(0.0, |node| dot(value(node), site.normal)) + site.gap
             };
             let slope = (height(b) - height(a)) / span.length;
             let tangent = [0, 1].map(|c| (q[c] - p[c]) / span.length);
@@ -37,10 +37,7 @@ impl Along<'_> {
         let (mut product, mut square, mut size, mut pairs) = (0.0, 0.0, 0.0, Vec::new());
         for place in places {
             let (Some((sum, count)), Some(tangent)) = (slopes.get(place), tangents.get(place)) else { continue };
-            let site = &sites[*place];
-            let (own, other) = (value(site.first), site.second.map_or([0.0; 2], value));
-            let slip = (own[0] - other[0]) * tangent[0] + (own[1] - other[1]) * tangent[1];
-            let (found, expected) = (self.depth(*place), slip * sum / count);
+            let (found, expected) = (self.depth(*place), sites[*place].jump(*tangent, value) * sum / count);
             product += found * expected;
             square += expected * expected;
             size += found * found;
