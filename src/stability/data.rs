@@ -75,6 +75,14 @@ pub struct Step {
     pub answer: Option<Answer>,
 }
 
+impl Step {
+    /// Of a value at which a method is not run.
+    pub fn left_out() -> Step {
+        let why = "left out of a reduced matrix".to_string();
+        Step { outcome: Outcome::NotApplicable, why, error: None, bound: None, answer: None }
+    }
+}
+
 /// How a run went, better before worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -131,8 +139,8 @@ impl Cell {
 
     /// The last value before the first that is not correct; `None` where the first is not.
     pub fn correct_to(&self) -> Option<usize> {
-        let good = self.steps.iter().take_while(|s| s.outcome == Outcome::Correct).count();
-        good.checked_sub(1)
+        let good = self.steps.iter().take_while(|s| s.outcome <= Outcome::Correct).count();
+        self.steps[..good].iter().rposition(|s| s.outcome == Outcome::Correct)
     }
 
     /// The first value with the worst outcome.

@@ -10,6 +10,7 @@ use crate::cli::words::say;
 use crate::cli::{CliError, Exit, this_program};
 use crate::primal::SolverCommand;
 use crate::process::signals::LastWords;
+use crate::report::folder;
 use crate::stability::{self, Journal, Matrix, REGIMES, Regime, Sweep, markdown, sweep};
 
 /// Seconds that one run may take.
@@ -62,6 +63,12 @@ impl Args {
         words.join(" ")
     }
 
+    /// The regimes to sweep, each once: those that are named, or all.
+    fn regimes(&self) -> Vec<&'static Regime> {
+        let named = |regime: &&Regime| self.regime.is_empty() || self.regime.iter().any(|other| other.id == regime.id);
+        REGIMES.iter().copied().flatten().filter(named).collect()
+    }
+
     /// Refuses a solver in the place of FEniCSx where the methods that are named leave FEniCSx out.
     fn refuse_unrun(&self) -> Result<(), CliError> {
         match &self.reference {
@@ -97,16 +104,16 @@ fn regimes() -> String {
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     args.refuse_unrun()?;
     let folder = args.run.folder_named("stability");
+    folder::refuse(&folder, [])?;
     let (program, _) = this_program()?;
     let progress = Progress::new(args.run.quiet);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
-    let all = || REGIMES.iter().copied().flatten().collect();
     let failed = |text: String| CliError::stopped(Exit::Failed, text, "");
     let _kept = (!args.run.quiet).then(|| LastWords::kept_in(&folder, ", with this build of the program"));
-    let journal = Journal::open(&folder, &program, args.resume)
-        .map_err(|(path, error)| failed(format!("{}: {error}", path.display())))?;
+    let journal =
+        Journal::open(&folder, &program, args.resume).map_err(|(path, error)| CliError::unwritable(&path, &error))?;
     let what = Sweep {
-        regimes: if args.regime.is_empty() { all() } else { args.regime.clone() },
+        regimes: args.regimes(),
         methods: args.methods.chosen(),
         reduced: args.reduced,
         workers: args.threads.map_or(processors, |n| n as usize),
