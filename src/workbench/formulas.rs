@@ -27,6 +27,8 @@ pub enum Family {
     Q4,
     /// Serendipity quadrilateral: corners, then the middles of (0, 1), (1, 2), (2, 3), (3, 0).
     Q8,
+    /// Biquadratic quadrilateral: those of Q8, then the centre.
+    Q9,
 }
 
 /// The standard form of an element, alternatives to it, and mistakes in it.
@@ -37,7 +39,7 @@ pub enum Variant {
     Right,
     /// One quadrature point in the middle.
     OnePoint,
-    /// n × n quadrature points of Gauss on a quadrilateral, where two (three of Q8) are the rule. The integrand is no polynomial on a distorted one, so that
+    /// n × n quadrature points of Gauss on a quadrilateral, where two (three of Q8 and Q9) are the rule. The integrand is no polynomial on a distorted one, so that
     /// the matrix is another one, and as good.
     Points(usize),
     /// The Jacobian where its transpose belongs: ∇N = J⁻¹ ∇̂N in place of J⁻ᵀ ∇̂N.
@@ -111,12 +113,25 @@ pub(super) fn placed(own: &DMatrix<f64>, order: &[usize]) -> DMatrix<f64> {
     DMatrix::from_fn(own.nrows(), own.ncols(), |i, j| own[(place(i), place(j))])
 }
 
+/// The functions of Q9 as products: of which numbers in [`quadratic`] along either direction.
+const BIQUADRATIC: [(usize, usize); 9] = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1), (1, 1)];
+
+/// The quadratic functions on [0, 1] that are one at 0, ½ and 1.
+fn quadratic(x: f64) -> [f64; 3] {
+    [(1.0 - 2.0 * x) * (1.0 - x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)]
+}
+
+/// Their slopes.
+fn quadratic_slopes(x: f64) -> [f64; 3] {
+    [4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0]
+}
+
 /// Barycentric or bilinear place, and weight.
 type Rule = Vec<([f64; 2], f64)>;
 
 impl Family {
     /// All of them.
-    pub const ALL: [Family; 4] = [Family::P1, Family::P2, Family::Q4, Family::Q8];
+    pub const ALL: [Family; 5] = [Family::P1, Family::P2, Family::Q4, Family::Q8, Family::Q9];
 
     /// Its name.
     pub fn words(self) -> &'static str {
@@ -125,6 +140,7 @@ impl Family {
             Family::P2 => "quadratic triangle P2",
             Family::Q4 => "bilinear quadrilateral Q4",
             Family::Q8 => "serendipity quadrilateral Q8",
+            Family::Q9 => "biquadratic quadrilateral Q9",
         }
     }
 
@@ -137,6 +153,7 @@ impl Family {
             Family::Q8 => {
                 vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]]
             }
+            Family::Q9 => [Family::Q8.nodes(), vec![[0.5, 0.5]]].concat(),
         }
     }
 
@@ -144,8 +161,13 @@ impl Family {
     pub fn corners(self) -> usize {
         match self {
             Family::P1 | Family::P2 => 3,
-            Family::Q4 | Family::Q8 => 4,
+            Family::Q4 | Family::Q8 | Family::Q9 => 4,
         }
+    }
+
+    /// How many points of Gauss it has in each direction of a quadrilateral.
+    fn usual_points(self) -> usize {
+        if matches!(self, Family::Q8 | Family::Q9) { 3 } else { 2 }
     }
 
     /// The family that an outline belongs to, and its nodes in the order of the family.
@@ -157,6 +179,10 @@ impl Family {
                 (nodes[side[1]][c] - middle).abs() < 1e-6 * outline.size
             })
         };
+        let is_centre = |inside: usize| {
+            let mean = |c: usize| 0.25 * outline.corners.iter().map(|&n| nodes[n][c]).sum::<f64>();
+            (0..2).all(|c| (nodes[inside][c] - mean(c)).abs() < 1e-6 * outline.size)
+        };
         match (outline.corners.len(), nodes.len(), middles) {
             (3, 3, _) => Some((Family::P1, outline.corners.clone())),
             (4, 4, _) => Some((Family::Q4, outline.corners.clone())),
@@ -166,6 +192,12 @@ impl Family {
                 let family = if corners == 3 { Family::P2 } else { Family::Q8 };
                 Some((family, [outline.corners.clone(), middles].concat()))
             }
+            (4, 9, Some(middles)) if outline.sides.iter().all(|s| is_middle(s)) => match outline.inside[..] {
+                [inside] if is_centre(inside) => {
+                    Some((Family::Q9, [outline.corners.clone(), middles, vec![inside]].concat()))
+                }
+                _ => None,
+            },
             _ => None,
         }
     }
@@ -192,18 +224,21 @@ impl Family {
                 let across = |a: f64| [a * (1.0 - y * y), -2.0 * y * (1.0 + a * x)];
                 [&corner[..], &[along(-1.0), across(1.0), along(1.0), across(-1.0)]].concat()
             }
+            Family::Q9 => {
+                let [(f, df), (g, dg)] = [s, t].map(|x| (quadratic(x), quadratic_slopes(x)));
+                BIQUADRATIC.map(|(i, j)| [df[i] * g[j], f[i] * dg[j]]).into()
+            }
         }
     }
 
     fn rule(self, variant: Variant) -> Rule {
-        let usual = if self == Family::Q8 { 3 } else { 2 };
         match (self.corners(), variant) {
             (4, Variant::OnePoint) => vec![([0.5, 0.5], 1.0)],
             (_, Variant::OnePoint) => vec![([1.0 / 3.0, 1.0 / 3.0], 0.5)],
             (4, variant) => {
                 let points = match variant {
                     Variant::Points(n) | Variant::Incompatible(_, n) => n.max(1),
-                    _ => usual,
+                    _ => self.usual_points(),
                 };
                 let line = segment_rule(2 * points - 1);
                 line.iter().flat_map(|&(s, v)| line.iter().map(move |&(t, w)| ([s, t], v * w))).collect()

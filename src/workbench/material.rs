@@ -7,6 +7,9 @@ use serde::Serialize;
 use crate::element;
 use crate::scene::Kinematics;
 
+/// What moduli, thicknesses and their products are in any units.
+const IN_ANY_UNITS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+
 /// An isotropic material in the plane or of a body of revolution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(into = "Written")]
@@ -45,6 +48,12 @@ impl Material {
             let text =
                 format!("the thickness is {thickness}; a body of revolution has none: K is that of the full turn");
             return Err(text);
+        }
+        // Their squares, and sums of many, are numbers still.
+        if ![young, thickness, young * thickness].iter().all(|x| IN_ANY_UNITS.contains(x)) {
+            return Err(format!(
+                "E is {young} and the thickness {thickness}; in no units are they below 1e-100 or above 1e100"
+            ));
         }
         Ok(Material { kinematics, young, poisson, thickness })
     }

@@ -51,7 +51,9 @@ fn variants(r: &Reference) -> Vec<Trial> {
             "the Jacobian stands where its transpose belongs: gradients are J⁻¹∇N in place of J⁻ᵀ∇N",
         ),
     ];
-    list.into_iter().filter_map(of).collect()
+    let reduced =
+        (1, "reduced-quadrature", Variant::Points(2), "K is integrated with 2 × 2 points, and bends have no energy");
+    list.into_iter().chain((r.family == Family::Q9).then_some(reduced)).filter_map(of).collect()
 }
 
 /// det J omitted, squared, of the middle. Where it is the same at all points, these are factors.
@@ -78,7 +80,7 @@ fn measures(points: &[Point], each: &[DMatrix<f64>]) -> Vec<Trial> {
 /// Fits the weights of the points, relative to the right ones, and names what they show.
 fn fitted(k: &DMatrix<f64>, r: &Reference, points: &[Point], each: &[DMatrix<f64>], near: f64) -> Option<Trial> {
     // The contributions of more points to the few entries of Q4 explain too much.
-    let most = if r.family == Family::Q8 { 9 } else { 4 };
+    let most = if matches!(r.family, Family::Q8 | Family::Q9) { 9 } else { 4 };
     if each.len() < 2 || each.len() > most {
         return None;
     }
@@ -112,7 +114,7 @@ fn shear(r: &Reference) -> Vec<Trial> {
     normal[(2, 2)] = 0.0;
     shear[(2, 2)] = r.hooke[(2, 2)];
     let mut list = vec![(Variant::OnePoint, "one point in the middle")];
-    if r.family == Family::Q8 {
+    if matches!(r.family, Family::Q8 | Family::Q9) {
         list.push((Variant::Points(2), "2 × 2 points"));
     }
     let of = |(variant, words): (Variant, &str)| {

@@ -23,6 +23,7 @@ fn also_right(family: Family) -> &'static [Variant] {
     match family {
         Family::P1 | Family::P2 => &[],
         Family::Q8 => &[Points(2), Points(4), Points(5)],
+        Family::Q9 => &[Points(4), Points(5)],
         Family::Q4 => &[
             Points(3),
             Points(4),

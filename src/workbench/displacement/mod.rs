@@ -77,9 +77,10 @@ pub fn precision(given: f64) -> Result<f64, String> {
 }
 
 /// How the unknowns of a matrix are numbered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum Order {
     /// x and y of the first node, x and y of the second one, …
+    #[default]
     Interleaved,
     /// x of all nodes, then y of all nodes
     Blocked,

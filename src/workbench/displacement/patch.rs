@@ -133,7 +133,9 @@ const TOO_THIN: f64 = 1e-3;
 /// off them as if its sides were straight and their nodes evenly spaced.
 fn allowed(e: &DisplacementElement, value: f64, exact: &Matrix3<f64>) -> Result<f64, Fault> {
     let u = strains(&e.nodes).abs();
-    let size = u.tr_mul(&(e.matrix.abs() * &u)).amax() / (e.outline.area * exact.amax());
+    // A matrix that is far too large is not thin.
+    let stored = exact.amax().max(hooke_seen(&e.matrix, &e.nodes, &e.outline).amax());
+    let size = u.tr_mul(&(e.matrix.abs() * &u)).amax() / (e.outline.area * stored);
     let allowed = e.precision * (size / WELL_SHAPED).max(1.0);
     if allowed > TOO_THIN {
         return Err(Fault::NotMade(

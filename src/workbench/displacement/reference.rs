@@ -6,7 +6,7 @@ use crate::workbench::finding::{Fault, Measured, Property};
 
 pub const REFERENCE: Property<DisplacementElement> = Property {
     name: "reference",
-    asks: "K is that of the isoparametric element of the same nodes, P1, P2 or Q4",
+    asks: "K is that of the isoparametric element of the same nodes, P1, P2, Q4, Q8 or Q9",
     usual: false,
     measure,
 };

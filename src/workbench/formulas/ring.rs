@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, Matrix4};
 
-use super::{Family, Point, Rule, Variant, points_at};
+use super::{BIQUADRATIC, Family, Point, Rule, Variant, points_at, quadratic};
 use crate::element::polynomial::symmetric_rules::symmetric_rules;
 
 /// Points in each direction of a quadrilateral that are tried.
@@ -52,7 +52,12 @@ pub struct Points {
 pub fn rules(family: Family) -> Vec<Points> {
     let made = |rule: Rule| Points { count: rule.len(), rule };
     let mut all: Vec<Points> = match family.corners() {
-        4 => GAUSS.map(|n| made(family.rule(Variant::Points(n)))).into(),
+        // Four points leave bends of Q9 without energy.
+        4 => GAUSS
+            .iter()
+            .filter(|n| family != Family::Q9 || **n > 2)
+            .map(|n| made(family.rule(Variant::Points(*n))))
+            .collect(),
         _ => symmetric_rules()
             .iter()
             .map(|rule| made(rule.iter().map(|(l, w)| ([l[1], l[2]], 0.5 * w)).collect()))
@@ -61,8 +66,7 @@ pub fn rules(family: Family) -> Vec<Points> {
     let usual = match family {
         // One point would leave a rotation about it without energy.
         Family::P1 | Family::P2 => 3,
-        Family::Q4 => 4,
-        Family::Q8 => 9,
+        _ => family.usual_points().pow(2),
     };
     all.sort_by_key(|points| (points.count != usual, points.count));
     all
@@ -155,6 +159,10 @@ impl Family {
                 let along = |b: f64| 0.5 * (1.0 - x * x) * (1.0 + b * y);
                 let across = |a: f64| 0.5 * (1.0 - y * y) * (1.0 + a * x);
                 corner.into_iter().chain([along(-1.0), across(1.0), along(1.0), across(-1.0)]).collect()
+            }
+            Family::Q9 => {
+                let [f, g] = [s, t].map(quadratic);
+                BIQUADRATIC.map(|(i, j)| f[i] * g[j]).into()
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::workbench::finding::{Fault, Measured, Property};
 
 pub const REFERENCE: Property<DisplacementElement> = Property {
     name: "reference",
-    asks: "K is that of the isoparametric ring of the same nodes, P1, P2, Q4 or Q8, by a rule of as many points as it needs, or more",
+    asks: "K is that of the isoparametric ring of the same nodes, P1, P2, Q4, Q8 or Q9, by a rule of as many points as it needs, or more",
     usual: false,
     measure,
 };
