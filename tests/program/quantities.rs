@@ -237,3 +237,47 @@ fn the_compliance_is_told_where_loads_alone_do_work() {
         }
     }
 }
+
+/// What no mesh gives an interval is refused before any is made, also where the first mesh is too coarse to tell more.
+#[test]
+fn refinement_towards_what_has_no_interval_does_not_begin() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let crack = |size: &str, body: &str| {
+        format!(
+            r#"
+[model]
+kinematics = "plane-strain"
+[geometry]
+size = {size}
+[[geometry.polygons]]
+body = "plate"
+points = [[0, 0], [0.5, 0], [1, 0], [1, 3], [0, 3]]
+edges = ["crack", "ahead", "", "top", ""]
+[bodies.plate]
+{body}
+[[supports]]
+on = "ahead"
+type = "roller"
+[[tractions]]
+on = "top"
+value = [0, 1]
+[[quantities]]
+name = "K"
+stress_intensity = "KI"
+tip = [0.5, 0]
+"#
+        )
+    };
+    for size in ["0.2", "1.0"] {
+        for (body, words) in [
+            ("young = 1.0\npoisson = 0.3\ninitial_stress = [0.1, 0.5, 0]", "a temperature or an initial stress"),
+            ("orthotropic = { young = [2, 1, 1], poisson = [0.3, 0.3, 0.3], shear = 0.5 }", "not isotropic"),
+        ] {
+            std::fs::write(folder.path().join("crack.toml"), crack(size, body)).expect("writable");
+            let output = call(folder.path(), &["solve", "crack.toml", "--tolerance-of", "K=0.01"]);
+            ended(words, &output, 2, &["quantity 'K'", words]);
+        }
+    }
+    std::fs::write(folder.path().join("crack.toml"), crack("0.2", "young = 1.0\npoisson = 0.3")).expect("writable");
+    ended("an isotropic plate", &call(folder.path(), &["solve", "crack.toml", "--tolerance-of", "K=0.1"]), 0, &[]);
+}

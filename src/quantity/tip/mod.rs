@@ -52,14 +52,21 @@ impl Tip {
     /// # Errors
     /// [`NoTip`].
     pub fn new(problem: &Problem, mode: Mode, tip: [f64; 2]) -> Result<Self, NoTip> {
-        let place = Place::new(problem, mode, tip)?;
-        let material = problem.materials()[place.body];
-        let Some([kappa, gamma]) = material.pressure_and_shear() else {
-            return Err(NoTip::Anisotropic { body: problem.scene.bodies[place.body].name.clone() });
+        let place = Place::new(problem, mode, tip);
+        // What no mesh mends is said first.
+        let body = match &place {
+            Ok(place) => place.body,
+            Err(NoTip::Coarse { body, .. }) => *body,
+            Err(other) => return Err(other.clone()),
         };
-        if !problem.scene.bodies[place.body].initial.is_none() {
-            return Err(NoTip::Strained { body: problem.scene.bodies[place.body].name.clone() });
+        let material = problem.materials()[body];
+        let Some([kappa, gamma]) = material.pressure_and_shear() else {
+            return Err(NoTip::Anisotropic { body: problem.scene.bodies[body].name.clone() });
+        };
+        if !problem.scene.bodies[body].initial.is_none() {
+            return Err(NoTip::Strained { body: problem.scene.bodies[body].name.clone() });
         }
+        let place = place?;
         let constants = [0.25 * material.unit() / kappa, material.unit() / gamma];
         let span = if place.half { [0.0, PI] } else { [-PI, PI] };
         Ok(Tip { field: Williams::extracting(mode, constants, span), place })

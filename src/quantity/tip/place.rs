@@ -18,6 +18,8 @@ const STRAIGHT: f64 = 1e-7;
 
 /// Distances below this part of the size of the body are none.
 const ON: f64 = 1e-9;
+/// Distances below this part of it are rounding.
+const SAME: f64 = 1e-14;
 
 /// Why a point is no tip of a crack on a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -53,6 +55,8 @@ pub enum NoTip {
         y: f64,
         /// The distance of the next boundary.
         radius: String,
+        /// Number of the body.
+        body: usize,
     },
     /// An initial strain.
     #[error(
@@ -110,7 +114,10 @@ impl Place {
             x.hypot(y)
         };
         let size = (0..mesh.points.len()).map(far).fold(0.0, f64::max);
-        let at: Vec<usize> = (0..mesh.points.len()).filter(|&v| far(v) <= ON * size).collect();
+        let mut at: Vec<usize> = (0..mesh.points.len()).filter(|&v| far(v) <= ON * size).collect();
+        // Where triangles about the tip are as small as that, the nearest of their vertices is meant.
+        let nearest = at.iter().map(|&v| far(v)).fold(f64::INFINITY, f64::min);
+        at.retain(|&v| far(v) <= nearest.max(SAME * size));
         let &[vertex] = at.as_slice() else {
             return Err(if at.is_empty() {
                 NoTip::NoVertex { x, y }
@@ -212,7 +219,7 @@ impl Place {
             .fold(f64::INFINITY, f64::min);
         let end = faces.iter().flat_map(|&e| mesh.edges[e].vertices).map(far).fold(0.0, f64::max);
         let radius = radius.min(end);
-        let coarse = || NoTip::Coarse { x, y, radius: format!("{radius:.3e}") };
+        let coarse = || NoTip::Coarse { x, y, radius: format!("{radius:.3e}"), body };
         let mut eta: Vec<f64> = (0..mesh.points.len()).map(|v| cut_off(far(v) / radius)).collect();
         let mut place =
             Place { body, at: mesh.points[vertex], axes, half, triangles: vec![], inner: vec![], edges: vec![] };

@@ -27,10 +27,11 @@ use super::certified::{Certified, StudyError, carrying_loads};
 use super::dossier::in_numbers;
 use crate::compare::name::OfRun;
 use crate::compare::{Allowances, Basis, Check, Comparison};
-use crate::dual::{DualMethod, Options, Size};
+use crate::dual::{DualError, DualMethod, Options, Size};
 use crate::mesh::refinement::bisect::RefinementEdges;
 use crate::problem::Problem;
 use crate::report::HistoryRow;
+use crate::report::text::number::{at_most_percent, percent};
 use admission::Admission;
 use answering::Answering;
 use forecast::Forecast;
@@ -193,7 +194,11 @@ pub fn adapt(
             // there are small ones.
             (Err(StudyError::Dual(reason)), Some(solved)) => {
                 shortest = COARSER * shortest.max(smallest);
-                (solved, Some(Stop::Unsolved(reason.to_string())))
+                let stop = match reason {
+                    DualError::TooLarge { reason } => Stop::Factors(reason),
+                    other => Stop::Unsolved(other.to_string()),
+                };
+                (solved, Some(stop))
             }
             (Err(error), _) => return Err(error),
         };
@@ -355,14 +360,14 @@ fn stopped(reason: &Stop, row: &HistoryRow, goal: &Goal, pace: Option<String>) -
     let pace = pace.map_or(String::new(), |pace| format!(" Outlook: {pace}."));
     let tolerance = match goal.wanted.first() {
         Some(wanted) if goal.tolerance.is_infinite() => {
-            format!("{} % for quantity '{}'", 100.0 * wanted.tolerance, wanted.name)
+            format!("{} for quantity '{}'", percent(wanted.tolerance), wanted.name)
         }
-        _ => format!("{} %", 100.0 * goal.tolerance),
+        _ => percent(goal.tolerance),
     };
     format!(
         "Refinement stopped before the tolerance of {tolerance} was reached, because {reason}: the guaranteed relative \
-         energy-norm error is {:.3} % with {} triangles.{pace}",
-        100.0 * row.relative_error_bound,
+         energy-norm error is {} with {} triangles.{pace}",
+        at_most_percent(row.relative_error_bound),
         row.triangles
     )
 }

@@ -5,6 +5,7 @@ use super::admission::Admission;
 use crate::budget::words;
 use crate::dual::Size;
 use crate::report::HistoryRow;
+use crate::report::text::number::{at_most_percent, percent};
 
 /// Meshes back from which the pace is taken.
 const BACK: usize = 3;
@@ -21,7 +22,7 @@ const STALLED: f64 = 0.2;
 pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, size: Size) -> Option<String> {
     let now = history.last()?;
     let before = history.get(history.len().checked_sub(BACK + 1)?)?;
-    let tolerance = 100.0 * goal.tolerance;
+    let tolerance = percent(goal.tolerance);
     if now.relative_error_bound <= goal.tolerance || now.triangles < EARLY {
         return None;
     }
@@ -29,10 +30,10 @@ pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, s
     let pace = fall / (now.unknowns as f64 / before.unknowns as f64).ln();
     if pace < STALLED {
         return Some(format!(
-            "the error stalls: {:.3} % on {} triangles, {:.3} % on {}, where {tolerance} % was asked for",
-            100.0 * before.relative_error_bound,
+            "the error stalls: {} on {} triangles, {} on {}, where {tolerance} was asked for",
+            at_most_percent(before.relative_error_bound),
             before.triangles,
-            100.0 * now.relative_error_bound,
+            at_most_percent(now.relative_error_bound),
             now.triangles
         ));
     }
@@ -43,7 +44,7 @@ pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, s
         (_, Err(excess)) => format!("{}, where {} may be used", words(excess.needed), words(excess.allowed)),
         _ => return None,
     };
-    Some(format!("at the present pace {tolerance} % takes about {} triangles ({why})", rounded(wanted)))
+    Some(format!("at the present pace {tolerance} takes about {} triangles ({why})", rounded(wanted)))
 }
 
 /// To two digits.

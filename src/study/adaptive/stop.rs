@@ -17,6 +17,8 @@ pub enum Stop {
     SecondsLeft,
     /// The next mesh could not be solved.
     Unsolved(String),
+    /// The factors of the next mesh did not fit into memory.
+    Factors(String),
     /// There is no upper bound.
     NoUpperBound(String),
     /// The last two meshes were hardly worth their triangles.
@@ -41,7 +43,7 @@ impl fmt::Display for Stop {
             }
             Stop::Seconds(most) => write!(f, "{most} seconds have passed"),
             Stop::SecondsLeft => f.write_str("the time that is left is too short for the next mesh"),
-            Stop::Unsolved(why) => write!(f, "the next mesh could not be solved ({why})"),
+            Stop::Unsolved(why) | Stop::Factors(why) => write!(f, "the next mesh could not be solved ({why})"),
             Stop::NoUpperBound(why) => write!(f, "no upper bound could be built ({why})"),
             Stop::Stalled => f.write_str("it no longer makes the error smaller"),
             Stop::Scales(where_it_is) => f.write_str(where_it_is),
@@ -59,7 +61,7 @@ impl Stop {
     pub fn advice(&self) -> &'static str {
         match self {
             Stop::Triangles(_) => "Refine further, with a larger --max-triangles, or ask for less.",
-            Stop::Memory(..) => "Refine further, with more memory (--max-memory), or ask for less.",
+            Stop::Memory(..) | Stop::Factors(_) => "Refine further, with more memory (--max-memory), or ask for less.",
             Stop::Seconds(_) | Stop::SecondsLeft => "Refine further, with a larger --max-seconds, or ask for less.",
             Stop::Unsolved(_) | Stop::NoUpperBound(_) => {
                 "No limit of this run was met, and a larger one would change nothing: try another --method, or ask for less."
