@@ -48,6 +48,7 @@ mod spoiled;
 mod stability;
 mod stale;
 mod statics;
+mod unheard;
 #[path = "../support/validate.rs"]
 mod validate;
 mod words;

@@ -44,10 +44,10 @@ pub struct Args {
     #[command(flatten)]
     pub values: ValueOptions,
     /// Name of the point data that is the displacement, where it is not displacement, u or disp
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", requires = "displacement")]
     pub field: Option<String>,
     /// Claim that the field is the discrete solution of a displacement method on this mesh, and hold it to that
-    #[arg(long)]
+    #[arg(long, requires = "displacement")]
     pub solution: bool,
     /// Claim that contact holds in the mean over edges, as mortar and Nitsche methods have it: what nodes then penetrate is a
     /// remark

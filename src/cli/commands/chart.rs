@@ -17,6 +17,7 @@ use crate::cli::{CliError, Exit, this_program};
 use crate::measure::Method;
 use crate::primal::SolverCommand;
 use crate::process::signals::LastWords;
+use crate::report::folder;
 use crate::scene::Scene;
 
 const REFINE: u32 = 3;
@@ -181,6 +182,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
         scenes.push(scene);
     }
     let folder = args.run.folder_named(scenes.first().filter(|_| scenes.len() == 1).map_or("chart", |s| &s.name));
+    folder::refuse(&folder, [])?;
     let failed = |e: CampaignError| CliError::stopped(Exit::Failed, e.to_string(), "");
     let kept = if args.resume { chart::read(&folder).map_err(|e| failed(e.into()))? } else { None };
     let (program, _) = this_program()?;

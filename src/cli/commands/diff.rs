@@ -23,11 +23,20 @@ pub struct Args {
     pub html: Option<PathBuf>,
 }
 
+/// True if nothing is lost with a file: it is not there, empty, or a page.
+fn is_replaceable(path: &Path) -> bool {
+    std::fs::read(path).map_or(true, |bytes| bytes.is_empty() || bytes.starts_with(b"<!DOCTYPE html"))
+}
+
 /// Compares, and ends with code 1 if the outcome of a check differs or the reports contradict each other.
 ///
 /// # Errors
 /// There is no report, its files are of several runs, or the page cannot be written.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
+    if let Some(file) = args.html.as_ref().filter(|file| !is_replaceable(file)) {
+        let message = format!("{}: the file is there and is no page, and --html would replace it", file.display());
+        return Err(CliError::stopped(Exit::BadInput, message, "give the path of another file"));
+    }
     let read = |path: &Path| {
         Stored::read(path).map_err(|e| {
             CliError::stopped(Exit::BadInput, e.to_string(), "give the folder of a report, or its report.json")

@@ -34,8 +34,13 @@ pub struct Args {
     #[arg(long, value_name = "FILE", requires = "matrix")]
     pub nodes: Option<PathBuf>,
     /// How the unknowns of the matrix are numbered
-    #[arg(long, value_enum, default_value_t = Order::Interleaved, requires = "matrix")]
-    pub order: Order,
+    #[arg(
+        long,
+        value_enum,
+        requires = "matrix",
+        help = "How the unknowns of the matrix are numbered [default: interleaved]"
+    )]
+    pub order: Option<Order>,
     /// Plane state of the material, or a body of revolution about x = 0, with K of the full turn
     #[arg(long, value_enum, requires = "matrix")]
     pub kinematics: Option<Kinematics>,
@@ -62,6 +67,45 @@ pub struct Args {
     pub run: RunOptions,
 }
 
+impl Args {
+    /// Refuses what is said of a matrix for an element that comes with the program.
+    fn refuse_of_matrix(&self, name: &str) -> Result<(), CliError> {
+        let given = [
+            ("--nodes", self.nodes.is_some()),
+            ("--order", self.order.is_some()),
+            ("--kinematics", self.kinematics.is_some()),
+            ("--young", self.young.is_some()),
+            ("--poisson", self.poisson.is_some()),
+            ("--thickness", self.thickness.is_some()),
+            ("--precision", self.precision.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => {
+                let message = format!("{option} is about a matrix, and {name} comes with all that it needs");
+                Err(bad(message, &format!("leave {option} out, or give your own matrix with --matrix")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses the claim of a property that was not looked at: it could not fail.
+    fn refuse_unmade(&self, report: &Report) -> Result<(), CliError> {
+        for name in &self.claim {
+            if self.waive.contains(name) {
+                return Err(bad(format!("{name} is claimed and waived"), "leave one of the two out"));
+            }
+            let why = match report.finding(name) {
+                None => "it is a property of other elements".to_string(),
+                Some(finding) if finding.passed.is_none() => finding.sentence.clone(),
+                Some(_) => continue,
+            };
+            let remedy = format!("leave --claim {name} out, or give what it takes to look at it");
+            return Err(bad(format!("{} cannot be held to {name}: {why}", report.element), &remedy));
+        }
+        Ok(())
+    }
+}
+
 fn property(name: &str) -> Result<String, String> {
     let text = || "no property has this name; report.json lists them".to_string();
     workbench::is_property(name).then(|| name.to_string()).ok_or_else(text)
@@ -85,12 +129,16 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let (subject, name) = match (&args.matrix, &args.name) {
         (Some(file), _) => (Subject::Displacement(Box::new(matrix(args, file)?)), stem(file)),
         (None, Some(name)) => {
+            args.refuse_of_matrix(name)?;
             let Shipped { name, lacks, adds, .. } = *known(name)?;
             options.waived.extend(lacks.iter().map(|name| name.to_string()));
             options.claimed.extend(adds.iter().map(|name| name.to_string()));
             (known(name)?.subject().map_err(|e| CliError::stopped(Exit::Failed, e, ""))?, name.to_string())
         }
         (None, None) => {
+            if let Some(property) = args.claim.iter().chain(&args.waive).next() {
+                return Err(bad(format!("of what element {property} is said, is missing"), "give NAME or --matrix"));
+            }
             list();
             return Ok(Exit::Agree);
         }
@@ -98,6 +146,7 @@ pub fn run(args: &Args) -> Result<Exit, CliError> {
     let dir = args.run.folder_named(&format!("element-{name}"));
     folder::refuse(&dir, workbench::NAMES).map_err(|e| bad(e.to_string(), ""))?;
     let report = subject.examine(&options);
+    args.refuse_unmade(&report)?;
     report.write(&dir).map_err(|e: ReportError| CliError::stopped(Exit::Failed, e.to_string(), ""))?;
     if !args.run.quiet {
         told(&report).iter().for_each(|line| say::line(line));
@@ -173,7 +222,8 @@ fn matrix(args: &Args, file: &Path) -> Result<DisplacementElement, CliError> {
     })?;
     let nodes = read::points(&nodes).map_err(about)?;
     let material = material(args, &arrays).map_err(about)?;
-    let element = DisplacementElement::of_matrix(&stem(file), k, nodes, args.order, material).map_err(about)?;
+    let element = DisplacementElement::of_matrix(&stem(file), k, nodes, args.order.unwrap_or_default(), material)
+        .map_err(about)?;
     let usual = if *single { SINGLE } else { element.precision };
     Ok(element.with_precision(args.precision.unwrap_or(usual)))
 }

@@ -27,5 +27,11 @@ pub struct Args {
 /// There is no job in the folder, or its files cannot be written.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
     let plan = Plan::read(&args.out).map_err(job::refused)?;
+    let is_signed = !args.signature.reason.is_empty() || args.signature.accepted_by.is_some();
+    if is_signed && !plan.accept {
+        let message =
+            "--reason and --accepted-by are said of numbers that are accepted, and the parts were run without --accept";
+        return Err(CliError::stopped(Exit::BadInput, message, "leave them out"));
+    }
     job::conclude(&args.out, &plan, Some(&args.signature.signature()), args.quiet)
 }

@@ -43,8 +43,14 @@ pub struct JobOptions {
     #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..=1024), help_heading = "Several scenes")]
     pub jobs: Option<u32>,
     /// End a scene after S seconds, and go on with the next
-    #[arg(long, value_name = "S", default_value_t = 3600.0, value_parser = positive, help_heading = "Several scenes")]
-    pub scene_seconds: f64,
+    #[arg(
+        long,
+        value_name = "S",
+        value_parser = positive,
+        help_heading = "Several scenes",
+        help = "End a scene after S seconds, and go on with the next [default: 3600]"
+    )]
+    pub scene_seconds: Option<f64>,
     /// Keep what an interrupted job has finished; scenes that gave no answer are tried again
     #[arg(long, help_heading = "Several scenes")]
     pub resume: bool,
@@ -63,7 +69,11 @@ impl JobOptions {
     /// True if `scenes` are a job, and not one scene.
     fn are_job(&self, scenes: &[PathBuf]) -> bool {
         self.part.is_none()
-            && (scenes.len() > 1 || self.resume || self.shard.is_some() || scenes.iter().any(|path| path.is_dir()))
+            && (scenes.len() > 1
+                || self.resume
+                || self.shard.is_some()
+                || self.scene_seconds.is_some()
+                || scenes.iter().any(|path| path.is_dir()))
     }
 
     /// True if this is one scene of a job.
@@ -146,7 +156,7 @@ fn several(order: &Order<'_>) -> Result<Exit, CliError> {
         code: &code,
         out: &out,
         processes,
-        limit: limit(order.job.scene_seconds),
+        limit: limit(order.job.scene_seconds.unwrap_or(SCENE_SECONDS)),
         memory: memory(order, processes),
         shard,
         resume: order.job.resume,
@@ -247,6 +257,9 @@ fn line(plan: &Plan, entry: &Entry) -> String {
 fn plan(order: &Order<'_>) -> Result<Plan, CliError> {
     let (files, left_out) = job::scenes_of(order.scenes).map_err(refused)?;
     let options = order.given.without(&OF_THE_JOB).map(unicode).collect::<Result<Vec<String>, CliError>>()?;
+    if let Some(judge) = order.judge {
+        judge.refuse_unheard(order.job.shard.is_some())?;
+    }
     let baseline = order.judge.and_then(|judge| judge.baseline.clone());
     let accept = order.judge.is_some_and(|judge| judge.accept);
     if let Some(file) = &baseline {
@@ -280,6 +293,9 @@ fn unicode(option: &OsString) -> Result<String, CliError> {
         CliError::stopped(Exit::BadInput, message, "rename the file")
     })
 }
+
+/// Seconds that a scene may take where nothing else is said.
+const SCENE_SECONDS: f64 = 3600.0;
 
 /// Refuses a baseline that a job cannot use.
 fn refuse_baseline(file: &Path, accept: bool) -> Result<(), CliError> {

@@ -44,6 +44,11 @@ fn bad(message: impl Into<String>, remedy: &str) -> CliError {
 /// # Errors
 /// The file cannot be read or holds no plane cells, or a result cannot be written.
 pub fn run(args: &Args) -> Result<Exit, CliError> {
+    if args.scene.is_some() && args.file.to_str().is_none() {
+        let message =
+            format!("{}: the name of the file is not Unicode, and a scene cannot name it", args.file.display());
+        return Err(bad(message, "rename the file"));
+    }
     if let Some(scene) = args.scene.as_deref().filter(|scene| scene.symlink_metadata().is_ok()) {
         return Err(bad(
             format!("{} exists already", scene.display()),

@@ -43,8 +43,8 @@ pub fn man(args: &ManArgs) -> Result<Exit, CliError> {
     let failed = |e: std::io::Error| CliError::stopped(Exit::Failed, format!("the manual cannot be written: {e}"), "");
     match &args.out {
         Some(folder) => {
-            std::fs::create_dir_all(folder).map_err(failed)?;
-            clap_mangen::generate_to(Cli::command(), folder).map_err(failed)?;
+            std::fs::create_dir_all(folder).map_err(|e| CliError::unwritable(folder, &e))?;
+            clap_mangen::generate_to(Cli::command(), folder).map_err(|e| CliError::unwritable(folder, &e))?;
             Ok(Exit::Agree)
         }
         None => {

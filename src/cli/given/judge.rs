@@ -22,6 +22,7 @@ impl JudgeOptions {
     /// # Errors
     /// Names the baseline or the tolerance at fault.
     pub fn refuse_early(&self, scene: &Scene, fields: Option<Vec<String>>, job: &JobOptions) -> Result<(), CliError> {
+        self.refuse_unheard(false)?;
         match &self.baseline {
             Some(file) if self.accept && !job.is_part() => Baseline::refuse(file).map_err(refused)?,
             Some(file) if Accepted::is_meant(file) && self.accept => {
@@ -36,6 +37,33 @@ impl JudgeOptions {
             Some(fields) if !job.is_part() => self.refuse_foreign(&[(scene.clone(), fields)]),
             _ => Ok(()),
         }
+    }
+
+    /// Refuses to hear who accepts, and why, where nothing is accepted, or where there is no place to write it; `is_shard` says that parts of
+    /// a job are run by themselves.
+    ///
+    /// # Errors
+    /// Bad input.
+    pub fn refuse_unheard(&self, is_shard: bool) -> Result<(), CliError> {
+        let SignatureOptions { reason, accepted_by } = &self.signature;
+        let option = match (reason.as_str(), accepted_by) {
+            ("", None) => return Ok(()),
+            ("", Some(_)) => "--accepted-by",
+            _ => "--reason",
+        };
+        let [why, remedy] = match &self.baseline {
+            _ if !self.accept => ["nothing is accepted", "add --baseline FILE.toml and --accept"],
+            _ if is_shard => ["a part of a job accepts nothing by itself", "give it to `hypercircle gather`"],
+            Some(file) if !Accepted::is_meant(file) => {
+                ["a baseline in JSON has no place for it", "give the baseline a name that ends with .toml"]
+            }
+            _ => return Ok(()),
+        };
+        Err(CliError::stopped(
+            Exit::BadInput,
+            format!("{option} is said of numbers that are accepted, and {why}"),
+            remedy,
+        ))
     }
 
     /// Refuses a tolerance for a check that is made on none of `scenes`, given with the displacement fields that are

@@ -126,7 +126,7 @@ impl Session {
         energy.guarantee = match checked(proof, || self.progress.phase("verifying the proof")) {
             Some(Ok(checker)) => guarantee.proved_by(&checker),
             Some(Err(why)) => {
-                self.progress.remark(&format!("{CHECKER} did not verify the proof: {why}"));
+                self.progress.warn(&format!("{CHECKER} did not verify the proof: {why}"));
                 Guarantee { words: format!("{}, but not proved: {why}", guarantee.words), ..guarantee }
             }
             None => {
@@ -139,7 +139,7 @@ impl Session {
 
     fn without_proof(&self, dossier: &mut Dossier<'_>, why: &str) {
         let text = format!("No proof travels with this report: {why}.");
-        self.progress.remark(&text);
+        self.progress.warn(&text);
         dossier.report.notes.push(Note { weakens_guarantee: false, text });
     }
 }

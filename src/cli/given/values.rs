@@ -32,7 +32,13 @@ impl ValueOptions {
             Some(file) => read(file, scene)?,
             None => Vec::new(),
         };
-        all.extend(self.value.iter().cloned());
+        for value in &self.value {
+            if self.value.iter().filter(|other| other.name == value.name).count() > 1 {
+                let message = format!("--value gives {} twice", value.name);
+                return Err(CliError::stopped(Exit::BadInput, message, "give one value for a quantity"));
+            }
+            all.push(value.clone());
+        }
         Ok(all)
     }
 }

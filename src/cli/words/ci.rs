@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::say::shown;
+use super::say::{self, shown};
 use crate::cli::CliError;
 use crate::report::{Report, Status, summary};
 
@@ -37,8 +37,10 @@ pub fn step_summary(summary: &str, short: &str) {
     let there = std::fs::metadata(&path).map_or(0, |file| file.len());
     let text = if there + (summary.len() as u64) < MOST { summary } else { short };
     // The results are written; a page that cannot be is no reason to lose the verdict.
-    if let Ok(mut file) = OpenOptions::new().create(true).append(true).open(&path) {
-        let _ = writeln!(file, "{text}");
+    let opened = OpenOptions::new().create(true).append(true).open(&path);
+    if let Err(error) = opened.and_then(|mut file| writeln!(file, "{text}")) {
+        let path = path.to_string_lossy();
+        say::complaint(&format!("the summary of this step is missing: GITHUB_STEP_SUMMARY is {path}, and {error}"));
     }
 }
 

@@ -43,6 +43,7 @@ impl CliError {
             | ErrorKind::IsADirectory
             | ErrorKind::PermissionDenied
             | ErrorKind::ReadOnlyFilesystem
+            | ErrorKind::AlreadyExists
             | ErrorKind::InvalidFilename => Exit::BadInput,
             _ => Exit::Failed,
         };

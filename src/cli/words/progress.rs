@@ -88,9 +88,14 @@ impl Progress {
     /// Says at once, as a line of its own, what whoever waits should know.
     pub fn remark(&self, what: &str) {
         if !self.quiet {
-            // Nobody need be listening.
-            self.bar.suspend(|| writeln!(stderr(), "{what}")).unwrap_or_default();
+            self.warn(what);
         }
+    }
+
+    /// Says, also where silence is asked for, that something is missing which was asked for too.
+    pub fn warn(&self, what: &str) {
+        // Nobody need be listening.
+        self.bar.suspend(|| writeln!(stderr(), "{what}")).unwrap_or_default();
     }
 }
 

@@ -157,8 +157,12 @@ pub fn refuse<'a>(dir: &Path, names: impl IntoIterator<Item = &'a str>) -> Resul
     if !existing.is_dir() {
         return Err(ReportError::NotAFolder { path: existing.to_path_buf() });
     }
-    if let Err(error) = access(existing, Access::WRITE_OK | Access::EXEC_OK) {
-        return Err(ReportError::Create { path: dir.to_path_buf(), source: error.into() });
+    // Folders of the system allow it, and refuse it when it is tried.
+    let tried = || tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(existing).map(drop);
+    if let Err(source) =
+        access(existing, Access::WRITE_OK | Access::EXEC_OK).map_err(io::Error::from).and_then(|()| tried())
+    {
+        return Err(ReportError::Create { path: dir.to_path_buf(), source });
     }
     for path in names.into_iter().map(|name| dir.join(name)) {
         if path.is_dir() {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::compare::name::of_baseline;
 use crate::compare::{Allowances, Basis, Check, Comparison};
 use crate::report::folder::{refuse_file, replace_file};
-use crate::study::{Answer, Certified};
+use crate::study::{Accepted, Answer, Certified};
 
 /// Largest relative change that a later run may show: the numbers are bit-stable for one build, other builds and
 /// machines round differently.
@@ -47,6 +47,14 @@ pub enum BaselineError {
     #[error("baseline {path} is not a regular file; give the path of a file")]
     NoFile {
         /// The path that was given.
+        path: PathBuf,
+    },
+    /// Something else is there, and would be lost.
+    #[error(
+        "baseline {path}: the file is there and holds no baseline, and --accept would replace it; give the path of another file"
+    )]
+    Foreign {
+        /// The file.
         path: PathBuf,
     },
     /// It is no baseline.
@@ -110,13 +118,16 @@ impl Baseline {
         Ok(baseline)
     }
 
-    /// Refuses a path that a baseline cannot be written to.
+    /// Refuses a path that a baseline cannot be written to, or that something else has.
     ///
     /// # Errors
     /// [`BaselineError`].
     pub fn refuse(path: &Path) -> Result<(), BaselineError> {
         match std::fs::metadata(path) {
             Ok(kind) if !kind.is_file() => return Err(BaselineError::NoFile { path: path.to_path_buf() }),
+            Ok(kind) if kind.len() > 0 && !Accepted::is_meant(path) && !is_baseline(path) => {
+                return Err(BaselineError::Foreign { path: path.to_path_buf() });
+            }
             _ => {}
         }
         refuse_file(path).map_err(|source| BaselineError::Write { path: path.to_path_buf(), source })
@@ -164,6 +175,12 @@ impl Baseline {
         }
         checks
     }
+}
+
+/// True if a file has the tables of a baseline, of any version.
+fn is_baseline(path: &Path) -> bool {
+    let content = std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice::<serde_json::Value>(&bytes).ok());
+    content.is_some_and(|content| ["version", "scene", "values"].iter().all(|key| content.get(key).is_some()))
 }
 
 /// The largest difference from `value` that rounding explains, beside numbers up to `largest`.

@@ -145,6 +145,13 @@ pub struct Element {
     pub precision: Option<f64>,
 }
 
+impl Element {
+    /// True if something is said of a material, or of the digits of a matrix.
+    pub fn has_material(&self) -> bool {
+        [self.young, self.poisson, self.thickness, self.precision].iter().any(Option::is_some)
+    }
+}
+
 /// A plane state.
 #[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -190,6 +190,10 @@ fn examined(asked: Element) -> Result<Answer, CliError> {
     match (&asked.name, &asked.matrix) {
         (Some(_), Some(_)) => Err(bad("an element is a name or a matrix", "leave one of them out")),
         (None, None) => Ok(Answer::list()),
+        (Some(name), None) if asked.nodes.is_some() || asked.kinematics.is_some() || asked.has_material() => {
+            let remedy = "leave nodes, young, poisson, thickness, kinematics and precision out, or give a matrix";
+            Err(bad(format!("{name} comes with its nodes and its material"), remedy))
+        }
         (Some(name), None) => {
             let remedy = || format!("choose from {}", SHIPPED.iter().map(|s| s.name).collect::<Vec<_>>().join(", "));
             let known =

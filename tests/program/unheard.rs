@@ -1,0 +1,132 @@
+//! Options that would do nothing, files that would be lost, and places where nothing can be written: refused before anything is solved.
+
+use std::path::Path;
+
+use crate::command::{ended, hypercircle, run};
+
+/// A folder with the two blocks, a matrix that is the right one for E = 1, and its nodes.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    for name in ["two_blocks.toml", "patch.toml"] {
+        std::fs::copy(cases.join(name), folder.path().join(name)).expect("writable");
+    }
+    folder
+}
+
+#[track_caller]
+fn refused(folder: &Path, arguments: &[&str], words: &[&str]) {
+    ended(&arguments.join(" "), &run(hypercircle(folder, arguments)), 2, words);
+}
+
+#[test]
+fn what_would_not_be_heard_is_refused() {
+    let folder = folder();
+    let scene = "two_blocks.toml";
+    for (arguments, words) in [
+        (&["solve", scene, "--adapt", "h"][..], ["--adapt", "add --tolerance"]),
+        (&["solve", scene, "--max-triangles", "5"], ["--max-triangles", "add --tolerance"]),
+        (&["solve", scene, "--max-seconds", "1e-6"], ["--max-seconds", "leave --max-seconds out"]),
+        (&["verify", scene, "--reason", "because"], ["nothing is accepted", "--accept"]),
+        (&["verify", scene, "--baseline", "b.json", "--accept", "--reason", "x"], ["in JSON has no place", ".toml"]),
+        (
+            &["verify", scene, "--baseline", "b.toml", "--accept", "--reason", "x", "--shard", "1/2"],
+            ["a part of a job", "gather"],
+        ),
+        (&["verify", scene, "patch.toml", "--accepted-by", "me"], ["--accepted-by", "nothing is accepted"]),
+        (&["certify", scene, "--value", "force=1", "--solution"], ["--displacement", "required"]),
+        (&["certify", scene, "--value", "force=1", "--field", "u"], ["--displacement", "required"]),
+        (&["certify", scene, "--value", "force=1", "--value", "force=2"], ["force twice", "one value"]),
+        (&["element", "q4", "--young", "5"], ["--young is about a matrix", "leave --young out"]),
+        (&["element", "q4", "--order", "blocked"], ["--order is about a matrix", "--matrix"]),
+        (&["element", "q4", "--claim", "dimension"], ["cannot be held to dimension", "other elements"]),
+        (&["element", "q4", "--claim", "bound", "--waive", "bound"], ["claimed and waived", "one of the two"]),
+        (&["element", "--claim", "reference"], ["of what element", "give NAME"]),
+    ] {
+        refused(folder.path(), arguments, &words);
+    }
+    assert!(!folder.path().join("out").exists(), "nothing was written");
+}
+
+#[test]
+fn what_is_no_baseline_and_no_page_is_not_replaced() {
+    let folder = folder();
+    let place = folder.path();
+    std::fs::write(place.join("notes.md"), "mine").expect("writable");
+    ended("a report", &run(hypercircle(place, ["solve", "two_blocks.toml", "--out", "a", "-q"])), 0, &[]);
+    let report = std::fs::read(place.join("a/report.json")).expect("there");
+    for file in ["notes.md", "a/report.json"] {
+        let arguments = ["verify", "two_blocks.toml", "--baseline", file, "--accept"];
+        refused(place, &arguments, &[file, "holds no baseline", "another file"]);
+    }
+    refused(place, &["diff", "a", "a", "--html", "a/report.json"], &["a/report.json", "no page"]);
+    assert_eq!(std::fs::read_to_string(place.join("notes.md")).expect("there"), "mine");
+    assert_eq!(std::fs::read(place.join("a/report.json")).expect("there"), report);
+    // A page, or what is there for the first time, is.
+    for _ in 0..2 {
+        ended("a page", &run(hypercircle(place, ["diff", "a", "a", "--html", "page.html"])), 0, &[]);
+    }
+}
+
+#[test]
+fn a_place_without_room_for_files_is_bad_input() {
+    let folder = folder();
+    std::fs::write(folder.path().join("file"), "").expect("writable");
+    // A folder of the system, which says that it may be written to, and a file.
+    for place in ["/proc/x", "file"] {
+        for arguments in [
+            &["solve", "two_blocks.toml", "--out", place][..],
+            &["solve", "two_blocks.toml", "patch.toml", "--out", place],
+            &["element", "q4", "--out", place],
+            &["mesh", "two_blocks.toml", "--out", place],
+            &["chart", "two_blocks.toml", "--out", place],
+            &["stability", "--out", place],
+            &["man", "--out", place],
+        ] {
+            refused(folder.path(), arguments, &[]);
+        }
+    }
+}
+
+/// Entries that are too large by what a unit is, and by far more, are no thin element.
+#[test]
+fn a_matrix_in_other_units_is_not_passed() {
+    let folder = folder();
+    let place = folder.path();
+    std::fs::write(place.join("nodes.csv"), "0,0\n1,0\n0,1\n").expect("writable");
+    // The constant strain triangle in plane stress with E = 1, ν = 0.
+    let rows = [
+        [3, 1, -2, -1, -1, 0],
+        [1, 3, 0, -1, -1, -2],
+        [-2, 0, 2, 0, 0, 0],
+        [-1, -1, 0, 1, 1, 0],
+        [-1, -1, 0, 1, 1, 0],
+        [0, -2, 0, 0, 0, 2],
+    ];
+    let text: String = rows.map(|row| row.map(|x| format!("{}", f64::from(x) / 4.0)).join(",") + "\n").concat();
+    std::fs::write(place.join("K.csv"), text).expect("writable");
+    let matrix =
+        ["element", "--matrix", "K.csv", "--nodes", "nodes.csv", "--poisson", "0", "--kinematics", "plane-stress"];
+    for (young, exit) in [
+        ("1", 0),
+        ("1e-3", 1),
+        ("1e-9", 1),
+        ("1e-15", 1),
+        ("1e-60", 1),
+        ("1e9", 1),
+        ("1e60", 1),
+        ("1e154", 2),
+        ("1e-200", 2),
+    ] {
+        let output = run(hypercircle(place, matrix.iter().chain(&["--young", young, "-q"])));
+        assert_eq!(output.status.code(), Some(exit), "{young}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[test]
+fn a_summary_that_cannot_be_written_is_told() {
+    let folder = folder();
+    let mut command = hypercircle(folder.path(), ["solve", "two_blocks.toml", "-q"]);
+    command.env("GITHUB_STEP_SUMMARY", folder.path());
+    ended("a folder in the place of the summary", &run(command), 0, &["GITHUB_STEP_SUMMARY", "missing"]);
+}
