@@ -155,3 +155,17 @@ fn bad_input_is_refused_with_what_to_do() {
         assert!(!folder.path().join("out").exists());
     }
 }
+
+/// Entries that are too large by what a unit is, and by far more, are no thin element.
+#[test]
+fn a_matrix_in_other_units_is_not_passed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), |i, j| f64::from(TEXTBOOK[i][j]) / 4.0);
+    let others = MATRIX.iter().filter(|word| !["--young", "1"].contains(word)).copied();
+    let matrix: Vec<&str> = others.chain(["--out", "out", "-q", "--young"]).collect();
+    let exits = [("1", 0), ("1e-3", 1), ("1e-9", 1), ("1e-15", 1), ("1e-60", 1), ("1e9", 1), ("1e60", 1)];
+    // No units have these, and squares of them are no numbers.
+    for (young, exit) in exits.into_iter().chain([("1e154", 2), ("1e-200", 2)]) {
+        ended(young, &element(folder.path(), &[&matrix[..], &[young]].concat()), exit, &[]);
+    }
+}

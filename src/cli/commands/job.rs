@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::SystemTime;
 
 use clap::value_parser;
 
@@ -136,8 +137,20 @@ pub fn refused(error: JobError) -> CliError {
 /// Those of `one`; a job cannot be begun, or its files not be written. A scene of a job that fails is a result.
 pub fn run(order: &Order<'_>, one: impl FnOnce(&Path) -> Result<Exit, CliError>) -> Result<Exit, CliError> {
     match order.scenes {
-        [scene] if !order.job.are_job(order.scenes) => one(scene),
+        [scene] if !order.job.are_job(order.scenes) => {
+            let begun = SystemTime::now();
+            one(scene).inspect_err(|_| tell_of_an_earlier_report(order.run, scene, begun))
+        }
         _ => several(order),
+    }
+}
+
+/// Says, of a run that ended before it had a report, that the one in its folder is of an earlier run.
+fn tell_of_an_earlier_report(run: &RunOptions, scene: &Path, begun: SystemTime) {
+    let name = scene.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let report = run.folder_named(&name).join("report.json");
+    if std::fs::metadata(&report).and_then(|file| file.modified()).is_ok_and(|written| written < begun) {
+        say::complaint(&format!("{} is of an earlier run: this one has no report", report.display()));
     }
 }
 

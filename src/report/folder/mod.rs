@@ -157,8 +157,11 @@ pub fn refuse<'a>(dir: &Path, names: impl IntoIterator<Item = &'a str>) -> Resul
     if !existing.is_dir() {
         return Err(ReportError::NotAFolder { path: existing.to_path_buf() });
     }
-    // Folders of the system allow it, and refuse it when it is tried.
-    let tried = || tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(existing).map(drop);
+    // Folders of the system allow it, and refuse it when it is tried. A folder that is there may be exchanged by another run meanwhile.
+    let tried = || match existing == dir {
+        true => Ok(()),
+        false => tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(existing).map(drop),
+    };
     if let Err(source) =
         access(existing, Access::WRITE_OK | Access::EXEC_OK).map_err(io::Error::from).and_then(|()| tried())
     {
