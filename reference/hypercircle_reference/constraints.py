@@ -66,7 +66,7 @@ def build(problem: Problem, degree: int, nodal_contact: bool = False) -> Constra
 
 
 def _vertex_groups(problem: Problem, degree: int, builder: Builder, done: np.ndarray) -> None:
-    equalities = _vertex_equalities(problem)
+    equalities = _vertex_equalities(problem, degree)
     jumps, slips = _vertex_jumps(problem), vertex_slips(problem, degree)
     touched = np.unique(
         np.concatenate([[v for v, _, _ in equalities], [v for jump in jumps for v in jump[0] if v >= 0]]).astype(int)
@@ -144,7 +144,7 @@ def _vertex_stiffness(problem: Problem) -> np.ndarray:
     return stiffness
 
 
-def _vertex_equalities(problem: Problem) -> list[tuple[int, np.ndarray, float]]:
+def _vertex_equalities(problem: Problem, degree: int) -> list[tuple[int, np.ndarray, float]]:
     """(vertex, direction, value) of every u(vertex) · direction = value; equal ones once."""
     found: dict[tuple, tuple[int, np.ndarray, float]] = {}
     axes = np.eye(2)
@@ -159,8 +159,9 @@ def _vertex_equalities(problem: Problem) -> list[tuple[int, np.ndarray, float]]:
     for edge, direction, value in zip(problem.roller_edges, problem.roller_directions, problem.roller_values):
         for vertex in problem.edges[edge]:
             add(vertex, direction, value)
-    for vertex, direction in zip(problem.pin_vertices, problem.pin_directions):
-        add(vertex, direction, 0.0)
+    for vertex, direction, only in zip(problem.pin_vertices, problem.pin_directions, problem.pin_degrees):
+        if only in (0, degree):
+            add(vertex, direction, 0.0)
     return list(found.values())
 
 

@@ -161,6 +161,7 @@ class Problem:
     touching: Springs
     pin_vertices: np.ndarray
     pin_directions: np.ndarray
+    pin_degrees: np.ndarray
 
 
 def read_problem(path: Path) -> Problem:
@@ -238,6 +239,7 @@ def parse_problem(data: dict) -> Problem:
         touching=springs.part(touching=True),
         pin_vertices=index_column(pins, "pins", "vertex", (), len(points)),
         pin_directions=directions,
+        pin_degrees=column([{"degree": 0, **entry} for entry in pins], "pins", "degree", ()),
     )
 
 

@@ -104,3 +104,11 @@ def test_reactions_balance_the_loads(solve, degree):
         assert largest_excess(problem, of_nodes(result), degree) < 1e-12
     # The conditions form a cone.
     assert result["energy"] == pytest.approx(-result["strain_energy"], rel=1e-10)
+
+
+def test_a_pin_of_one_degree_holds_no_other():
+    data = two_blocks(2)
+    data["pins"] += [{"vertex": 0, "direction": [1.0, 0.0]}, {"vertex": 1, "direction": [1.0, 0.0], "degree": 1}]
+    for degree, held in ((1, [True, True]), (2, [True, False])):
+        changes = build(parse_problem(data), degree).T
+        assert [changes[2 * vertex].nnz == 0 for vertex in (0, 1)] == held

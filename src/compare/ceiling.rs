@@ -5,7 +5,7 @@
 //! larger than its strains loses every digit of them. The check is then not made, and has not passed.
 
 use super::Check;
-use super::contact::pressure::{Piece, dual_pressure, resultant};
+use super::contact::pressure::{Piece, dual_pressure};
 use super::contact::resultant::forces;
 use crate::bounds::Bracket;
 use crate::bounds::energy::initial_energy;
@@ -115,17 +115,12 @@ impl Ceilings {
     /// The ceilings of `problem`, from its data and λ_h.
     pub fn new(problem: &Problem, scales: &Scales, (dual, bracket): (&DualSolution, &Bracket)) -> Self {
         let contact = problem.interfaces.iter().enumerate().map(|(index, interface)| {
+            // Forces around a pin and radial ones cancel, and are there all the same.
+            let size =
+                |piece: &Piece| piece.coefficients().map(f64::abs).sum::<f64>() / piece.coefficients().count() as f64;
             let own = dual_pressure(dual, index);
-            if problem.section().is_revolved() {
-                // Radial forces cancel, and are there all the same.
-                let size = |piece: &Piece| {
-                    piece.coefficients().map(f64::abs).sum::<f64>() / piece.coefficients().count() as f64
-                };
-                let pairs = interface.pairs.iter().zip(&own);
-                return problem.scene.thickness * pairs.map(|(pair, piece)| pair.length * size(piece)).sum::<f64>();
-            }
-            let (force, _) = resultant(problem, interface, &own);
-            force[0].hypot(force[1])
+            let pairs = interface.pairs.iter().zip(&own);
+            problem.scene.thickness * pairs.map(|(pair, piece)| pair.length * size(piece)).sum::<f64>()
         });
         let part = PART * MISTAKE;
         let of_data = OF_DATA * scales.data.energy;

@@ -267,4 +267,6 @@ pub struct Pin {
     pub vertex: usize,
     /// Unit vector.
     pub direction: [f64; 2],
+    /// True if it is for models whose contact holds vertices alone.
+    pub of_vertices: bool,
 }

@@ -36,7 +36,7 @@ pub struct Scales {
     pub round_off: Sizes,
     /// Largest applied traction, or what a body force adds up to across its body.
     pub traction: f64,
-    /// How far supports and gaps can move a body: the largest prescribed displacement and all gaps beside pieces that
+    /// How far supports and gaps can move a body: the largest prescribed displacement, the deepest overlap and all gaps beside pieces that
     /// are not clamped. The widest gap where there is nothing else.
     pub imposed: f64,
     /// Of each body, stress for a unit strain in one direction with none across it.
@@ -184,7 +184,7 @@ impl Loads {
     }
 }
 
-/// The largest prescribed displacement, and the gaps that nothing but contact keeps a piece from crossing.
+/// The largest prescribed displacement, the deepest overlap of bodies, and the gaps that nothing but contact keeps a piece from crossing.
 fn imposed(problem: &Problem) -> f64 {
     let mesh = &problem.mesh;
     let (piece, count) = mesh.pieces();
@@ -201,7 +201,8 @@ fn imposed(problem: &Problem) -> f64 {
         let pairs = interface.pairs.iter().filter(|pair| pair.edges.iter().any(loose));
         pairs.flat_map(|pair| pair.gap).fold(0.0, f64::max)
     });
-    prescribed + crossed.sum::<f64>()
+    let overlaps = problem.pairs().flat_map(|pair| pair.gap).fold(0.0_f64, |most, gap| most.max(-gap));
+    prescribed + overlaps + crossed.sum::<f64>()
 }
 
 /// By how much a unit force, per unit thickness, moves a piece that nothing but springs holds in some motion, at most: the
@@ -293,6 +294,11 @@ mod tests {
         let loaded = scales(load(held(), "a_top", Load::Pressure(1.0)));
         assert_eq!((loose.imposed, loaded.imposed, scales(held()).imposed), (0.25, 0.0, 0.25));
         assert!((loose.data.stress - 0.25 / 2.0_f64.sqrt()).abs() < 1e-15 && loose.round_off.energy > 0.0);
+    }
+
+    #[test]
+    fn bodies_that_overlap_move_as_far() {
+        assert_eq!([squares(-0.25), clamp(squares(-0.25), "a_left")].map(|scene| scales(scene).imposed), [0.25; 2]);
     }
 
     #[test]

@@ -7,7 +7,8 @@ use super::cone::many::SparseCone;
 use super::friction;
 use super::lasting::{Lasting, Question};
 use super::loads::LoadResultants;
-use super::restraint::{Group, Part, Points};
+use super::openings::Points;
+use super::restraint::{Group, Part};
 use super::words;
 use crate::problem::Problem;
 use nalgebra::{DVector, Vector3};
@@ -43,13 +44,16 @@ impl Verdict {
         loads: &LoadResultants,
         before: &[Lasting],
     ) -> Result<Self, StaticsError> {
-        Self::from_cones(problem, group, loads, before, |vanishing, points| {
-            if group.members.len() > MANY {
-                Box::new(SparseCone::new(group, vanishing, points))
-            } else {
-                Box::new(DenseCone::new(group, vanishing, points))
-            }
-        })
+        Self::from_cones(problem, group, loads, before, |vanishing, points| cone(group, vanishing, points))
+    }
+
+    /// A basis of the motions that contact leaves free where it holds vertices alone, as it does in a model in displacements: those of
+    /// `held`, and those that only pressure along edges resists.
+    pub fn held_at_vertices(&self, problem: &Problem, group: &Group) -> Vec<DVector<f64>> {
+        if group.runs.iter().all(|run| run.turning.is_none()) {
+            return self.held.clone();
+        }
+        cone(group, &group.rollers(problem), Points::Vertices).held()
     }
 
     /// As [`Self::of`], with the cones that `cone` makes of vanishing rows and of the points of runs that must not penetrate.
@@ -116,6 +120,15 @@ impl Verdict {
         // On another mesh friction has another sum, and so has what it leaves of the loads.
         let lasting = (!rubs).then(|| Lasting { question, held: held.clone(), one_way: one_way.clone() });
         Ok(Verdict { held, driven: None, one_way, beyond_mesh, lasting })
+    }
+}
+
+/// The cone of allowed motions of `group`.
+fn cone<'a>(group: &'a Group<'a>, vanishing: &[Part], points: Points) -> Box<dyn Cone + 'a> {
+    if group.members.len() > MANY {
+        Box::new(SparseCone::new(group, vanishing, points))
+    } else {
+        Box::new(DenseCone::new(group, vanishing, points))
     }
 }
 

@@ -10,7 +10,8 @@ use faer::Mat;
 use nalgebra::DVector;
 
 use super::balance::RANK;
-use super::restraint::{Group, Part, Points};
+use super::openings::Points;
+use super::restraint::{Group, Part};
 use crate::optimise::{Law, Program, solve};
 
 /// Forces of this many times the loads are as good as any: levers make no more of them.
@@ -31,7 +32,7 @@ pub(super) fn relieved(
         .map(|run| (group.dense(&group.slip(run, run.ends[0])), run.friction.min(MOST * total)))
         .filter(|(row, most)| left(row).norm() > RANK && *most > 0.0)
         .collect();
-    let jumps = group.runs.iter().flat_map(|run| points.of(run).map(|point| group.dense(&group.jump(run, point))));
+    let jumps = group.runs.iter().flat_map(|run| group.jumps(run, points)).map(|row| group.dense(&row));
     let jumps: Vec<DVector<f64>> = jumps.map(|row| left(&row)).filter(|row| row.norm() > RANK).collect();
     let none = DVector::zeros(group.dimension());
     if slips.is_empty() || load.amax() == 0.0 {

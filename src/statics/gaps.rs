@@ -8,6 +8,7 @@ use super::StaticsError;
 use super::balance::{RANK, Verdict};
 use super::cone::span::Span;
 use super::loads::LoadResultants;
+use super::openings::Points;
 use super::restraint::{Group, Run};
 use crate::problem::{ContactPair, Problem};
 use nalgebra::DVector;
@@ -64,8 +65,8 @@ pub(super) fn free_while_open(
         }
         let motion = with_most_at_rest(motion, &found.held);
         let hindering = with_gap().filter(|run| {
-            let jumps = run.ends.map(|end| group.dense(&group.jump(run, end)).dot(&motion));
-            jumps.iter().any(|jump| jump.abs() > AT_REST * motion.amax())
+            let jumps = group.jumps(run, Points::Ends);
+            jumps.iter().any(|row| group.dense(row).dot(&motion).abs() > AT_REST * motion.amax())
         });
         let mut names: Vec<String> = hindering.map(|run| problem.interfaces[run.interface].name.clone()).collect();
         names.dedup();

@@ -18,6 +18,7 @@ mod friction;
 mod gaps;
 mod lasting;
 mod loads;
+mod openings;
 mod pins;
 mod reach;
 mod restraint;
@@ -52,7 +53,7 @@ pub struct Statics {
     /// They are the null vectors of the stiffness with all contacts held closed. Each has largest displacement 1, and as
     /// many pieces and rotations as possible are at rest in each (displacement: that of the centroid plus size times rotation).
     pub held: Vec<RigidMotion>,
-    /// One vertex pin per motion of `held`.
+    /// One vertex pin per motion of `held`, and per motion that is free where contact holds vertices alone.
     pub vertex_pins: Vec<VertexPin>,
     /// One edge pin per motion of `held`.
     pub edge_pins: Vec<EdgePin>,
@@ -162,7 +163,8 @@ pub fn check_after(
         let mut found = Verdict::of(problem, &group, &loads, before)?;
         lasting.extend(found.lasting.take());
         let words = |motion: &RigidMotion| words::moving(problem, &group, &loads, motion);
-        vertex_pins.extend(pins::vertex_pins(problem, &group, &found.held)?);
+        let at_vertices = found.held_at_vertices(problem, &group);
+        vertex_pins.extend(pins::vertex_pins(problem, &group, &found.held, &at_vertices)?);
         edge_pins.extend(pins::edge_pins(problem, &group, &found.held)?);
         for direction in &found.held {
             let motion = motion(&group, direction).0;

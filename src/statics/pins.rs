@@ -8,7 +8,7 @@ use super::balance::RANK;
 use super::components::Components;
 use super::cone::span::Span;
 use super::cone::sparse::{Row, Triangular, dense};
-use super::restraint::Group;
+use super::restraint::{Group, along};
 use crate::problem::{Condition, Problem};
 use nalgebra::DVector;
 use std::collections::BTreeMap;
@@ -20,6 +20,8 @@ pub struct VertexPin {
     pub vertex: usize,
     /// A coordinate direction wherever the vertex lies on no support and no contact; otherwise the tangent there.
     pub direction: [f64; 2],
+    /// True if the motion is free only where contact holds vertices alone.
+    pub of_vertices: bool,
 }
 
 /// An edge moment to hold: m_{e,p} · direction = 0 with m_{e,p} = ∫_e v q_p ds, q_p the hat function of the end p.
@@ -82,12 +84,41 @@ impl Kind {
     }
 }
 
-/// One vertex pin per motion of `held`, which they take away together.
+/// One vertex pin per motion of `held`, which they take away together, and one for each motion more of `at_vertices`, the motions that
+/// contact at vertices leaves free, those of `held` among them.
 pub(super) fn vertex_pins(
     problem: &Problem,
     group: &Group,
     held: &[DVector<f64>],
+    at_vertices: &[DVector<f64>],
 ) -> Result<Vec<VertexPin>, StaticsError> {
+    let mut pins = pins_at_vertices(problem, group, held)?;
+    if at_vertices.len() > held.len() {
+        let left = unpinned(problem, group, at_vertices, &pins);
+        let more = pins_at_vertices(problem, group, &left)?;
+        pins.extend(more.into_iter().map(|pin| VertexPin { of_vertices: true, ..pin }));
+    }
+    Ok(pins)
+}
+
+/// What `pins` leave free of `motions`.
+fn unpinned(problem: &Problem, group: &Group, motions: &[DVector<f64>], pins: &[VertexPin]) -> Vec<DVector<f64>> {
+    let mut left = motions.to_vec();
+    for pin in pins {
+        let component = group.components.of_vertex[pin.vertex];
+        let Some(row) = group.displacement(component, problem.mesh.points[pin.vertex], pin.direction) else { continue };
+        let moved = |motion: &DVector<f64>| along(&row, motion);
+        let most = (0..left.len()).max_by(|a, b| moved(&left[*a]).abs().total_cmp(&moved(&left[*b]).abs()));
+        let Some(taken) = most.map(|most| left.swap_remove(most)).filter(|taken| moved(taken) != 0.0) else { continue };
+        for motion in &mut left {
+            let factor = moved(motion) / moved(&taken);
+            motion.axpy(-factor, &taken, 1.0);
+        }
+    }
+    left
+}
+
+fn pins_at_vertices(problem: &Problem, group: &Group, held: &[DVector<f64>]) -> Result<Vec<VertexPin>, StaticsError> {
     if held.is_empty() {
         return Ok(Vec::new());
     }
@@ -121,7 +152,8 @@ pub(super) fn vertex_pins(
         Some(Place { index: (v, 0), component, point: mesh.points[v], kind: (*kind)? })
     });
     let chosen = choose(places, group, held)?;
-    Ok(chosen.into_iter().map(|(place, direction)| VertexPin { vertex: place.index.0, direction }).collect())
+    let pin = |(place, direction): (Place, _)| VertexPin { vertex: place.index.0, direction, of_vertices: false };
+    Ok(chosen.into_iter().map(pin).collect())
 }
 
 /// One edge pin per motion of `held`, which they take away together.

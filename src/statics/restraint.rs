@@ -55,25 +55,6 @@ impl Run {
 /// The part of a row that belongs to one member of a group: its number, and the coefficients of (a, b, s ω).
 pub(super) type Part = (usize, Vector3<f64>);
 
-/// Which two points of a run tell whether it opens.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Points {
-    /// Its ends.
-    Ends,
-    /// [`Run::reach`].
-    Reach,
-}
-
-impl Points {
-    /// The points of `run`.
-    pub fn of(self, run: &Run) -> [[f64; 2]; 2] {
-        match self {
-            Points::Ends => run.ends,
-            Points::Reach => run.reach,
-        }
-    }
-}
-
 /// The straight runs of all contacts, with stresses of these degrees. Contacts of a piece with itself ask nothing of a rigid
 /// motion and are left out.
 pub(super) fn runs(problem: &Problem, components: &Components, degree: Degree<'_>) -> Vec<Run> {
@@ -258,7 +239,7 @@ impl Group<'_> {
     }
 
     /// The row `direction` · (u' − u'') at `point` of `run`.
-    fn apart(&self, run: &Run, point: [f64; 2], direction: [f64; 2]) -> Vec<Part> {
+    pub(super) fn apart(&self, run: &Run, point: [f64; 2], direction: [f64; 2]) -> Vec<Part> {
         let sides = run.sides.iter().zip([1.0, -1.0]);
         sides
             .filter_map(|(side, sign)| {
@@ -266,11 +247,6 @@ impl Group<'_> {
                 Some((m, sign * part))
             })
             .collect()
-    }
-
-    /// The row (v' − v'')·n̂ at `point` of `run`, scaled to unit length.
-    pub fn jump(&self, run: &Run, point: [f64; 2]) -> Vec<Part> {
-        unit(self.across(run, point))
     }
 
     /// The row (v' − v'')·n̂ at `point` of `run`.
@@ -282,44 +258,6 @@ impl Group<'_> {
     pub fn slip(&self, run: &Run, point: [f64; 2]) -> Vec<Part> {
         let [x, y] = run.normal_at(point);
         self.apart(run, point, [-y, x])
-    }
-
-    /// The rows that vanish when `run` keeps closed: relative displacement of its middle and relative rotation. Unlike
-    /// the jumps at its two ends they stay independent however short the run is. Where the direction turns, a rotation may
-    /// keep it closed, and the jumps at the ends say whether it does. With friction the run does not slide either.
-    pub fn ties(&self, run: &Run) -> Vec<Vec<Part>> {
-        let mut ties = self.closing_ties(run).to_vec();
-        if run.friction > 0.0 {
-            ties.push(unit(self.slip(run, run.ends[0])));
-        }
-        ties
-    }
-
-    fn closing_ties(&self, run: &Run) -> [Vec<Part>; 2] {
-        let [p, q] = run.ends;
-        if run.turning.is_some() {
-            return [self.jump(run, p), self.jump(run, q)];
-        }
-        let middle = [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
-        let size = |c: &usize| self.components.size[*c];
-        let smallest = run.sides.iter().flatten().map(size).fold(f64::INFINITY, f64::min);
-        let sides = run.sides.iter().zip([1.0, -1.0]);
-        let turn = sides.filter_map(|(side, sign)| {
-            let c = (*side)?;
-            Some((self.member(c)?, Vector3::new(0.0, 0.0, sign * smallest / size(&c))))
-        });
-        [self.jump(run, middle), unit(turn.collect())]
-    }
-
-    /// The runs and ends that stay in touch in a `motion` that turns pieces; none where no piece turns or nothing touches.
-    /// Touch is judged at the two `points` of each run.
-    pub fn touching(&self, motion: &DVector<f64>, points: Points) -> Option<Vec<(&Run, [f64; 2])>> {
-        let size = motion.amax();
-        let turns = (0..motion.len()).any(|i| i % 3 == 2 && motion[i].abs() > 1e-5 * size);
-        let ends = self.runs.iter().flat_map(|run| points.of(run).map(|end| (*run, end)));
-        let jump = |run: &Run, end| self.jump(run, end).iter().map(|part| along(part, motion)).sum::<f64>();
-        let touching: Vec<_> = ends.filter(|(run, end)| jump(run, *end).abs() <= 1e-5 * size).collect();
-        (turns && !touching.is_empty()).then_some(touching)
     }
 
     /// The rows that vanish on rollers, and on springs that do not give: no rotation, and no displacement along each normal there is; at both ends of an edge that
@@ -387,7 +325,7 @@ pub(super) fn along((m, part): &Part, all: &DVector<f64>) -> f64 {
     (0..3).map(|i| part[i] * all[3 * m + i]).sum()
 }
 
-fn unit(mut row: Vec<Part>) -> Vec<Part> {
+pub(super) fn unit(mut row: Vec<Part>) -> Vec<Part> {
     let norm = row.iter().map(|(_, part)| part.norm_squared()).sum::<f64>().sqrt();
     if norm > 0.0 {
         row.iter_mut().for_each(|(_, part)| *part /= norm);

@@ -7,11 +7,12 @@ use crate::element::{OnQuadrilaterals, PlainDisplacement};
 use crate::mesh::Edge;
 use crate::primal::{Cells, PrimalContact, PrimalSolution, Space};
 use crate::problem::{Pin, Problem};
-use crate::statics::Statics;
+use crate::statics::{Statics, VertexPin};
 
 /// Points to hold so that the displacement model has one solution.
 pub fn pins(statics: &Statics) -> Vec<Pin> {
-    statics.vertex_pins.iter().map(|p| Pin { vertex: p.vertex, direction: p.direction }).collect()
+    let pin = |p: &VertexPin| Pin { vertex: p.vertex, direction: p.direction, of_vertices: p.of_vertices };
+    statics.vertex_pins.iter().map(pin).collect()
 }
 
 /// Names the solutions and brings them onto vertices and edges.

@@ -1,9 +1,11 @@
 //! Rigid obstacles with a place of their own.
 
+use crate::arcs::ring_on_pin;
 use crate::support::toml::Toml;
-use hypercircle::dual::{Condensed, Options};
+use hypercircle::dual::{ActiveSet, Clarabel, Condensed, DualMethod, Options};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
+use hypercircle::statics;
 use hypercircle::study::{Certified, certify};
 
 fn problem(text: &str) -> Problem {
@@ -147,5 +149,28 @@ fn what_does_not_belong_to_an_obstacle_is_refused() {
     for across in ["move = [0, 0.02]\nfriction = { bound = 0.1 }", "move = [0.1, 0.02]", "friction = { bound = 0.1 }"] {
         let text = scene(&format!("on = \"foot\"\n{line}\n{across}"));
         Scene::parse(&text, "s.toml".as_ref()).unwrap_or_else(|e| panic!("{across}: {e}"));
+    }
+}
+
+/// A pin beside the centre of the bore moves the ring as a whole, to first order. The normals of the pin meet in its centre, and at
+/// vertices nothing hinders the ring to turn about it; between them the jump of that motion does not vanish.
+#[test]
+fn a_ring_turns_freely_about_its_own_centre_alone() {
+    let methods: [&dyn DualMethod; 3] = [&Condensed::default(), &ActiveSet::default(), &Clarabel::default()];
+    let central = bracket(&solved(&ring_on_pin([0.0; 2])));
+    for (shift, free, apart) in
+        [(0.0, 1, 0.0), (1e-11, 1, 1e-8), (1e-5, 0, 1e-5), (1e-3, 0, 1e-3), (0.2, 0, f64::INFINITY)]
+    {
+        let problem = problem(&ring_on_pin([0.6 * shift, -0.8 * shift]));
+        let statics = statics::check(&problem).expect("decided");
+        let pins = statics.vertex_pins.iter().filter(|pin| pin.of_vertices == (free == 0));
+        assert_eq!((statics.held.len(), pins.count(), statics.vertex_pins.len()), (free, 1, 1), "{shift}");
+        for method in methods {
+            let found = certify(problem.clone(), method, &Options::default()).expect("solves");
+            let residual = found.dual.equilibrium.residual();
+            assert!(residual < 1e-9, "{} at {shift}: {residual:e}", method.name());
+            let ([a, b], [c, d]) = (bracket(&found), central);
+            assert!(a <= d * (1.0 + apart) && c <= b * (1.0 + apart), "{shift}: {a} … {b}, {c} … {d}");
+        }
     }
 }

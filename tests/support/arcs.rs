@@ -124,6 +124,27 @@ pub fn disc(n: usize, load: &str, normals: &str) -> String {
     if load == "force" { text.replace("[bodies.disc]\n", "[bodies.disc]\nbody_force = [0.0, -0.1]\n") } else { text }
 }
 
+/// A ring (radii 1 and 2, 24 facets) that nothing holds but a rigid pin of radius 1.01 around `centre`, in its bore.
+pub fn ring_on_pin(centre: [f64; 2]) -> String {
+    let n = 24;
+    let on = |radius: f64, i: usize| {
+        let angle = TAU * i as f64 / n as f64;
+        [radius * angle.cos(), radius * angle.sin()]
+    };
+    let half = |from: usize| {
+        let outer = (from..=from + n / 2).map(|i| on(2.0, i));
+        let inner = (from..=from + n / 2).rev().map(|i| on(1.0, i));
+        outer.chain(inner).collect::<Vec<_>>()
+    };
+    let named = |name: &str| vec![name.to_string(); n / 2];
+    let edges = [named("rim"), vec![String::new()], named("bore"), vec![String::new()]].concat();
+    let polygons: Vec<Outline<'_>> = [0, n / 2].map(|from| ("ring", half(from), edges.clone())).to_vec();
+    let conditions = format!(
+        "[[contacts]]\non = \"bore\"\nobstacle = {{ circle = {{ centre = {centre:?}, radius = 1.01, side = \"outside\" }} }}\n"
+    );
+    scene(TAU / n as f64 * 1.1, &polygons, &conditions)
+}
+
 /// A ring in another one under a pressure of one inside.
 pub const PRESSED: Rings = Rings { radii: [1.0, 1.5, 2.0], young: [2.0, 1.0], poisson: 0.3, inside: 1.0, depth: 0.0 };
 

@@ -226,6 +226,8 @@ impl FrictionEntry {
 struct PinEntry {
     vertex: usize,
     direction: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    degree: Option<u8>,
 }
 
 impl<'a> ProblemFile<'a> {
@@ -315,7 +317,14 @@ impl<'a> ProblemFile<'a> {
                     gap: pair.contact.map(|contact| contact.gap()),
                 })
                 .collect(),
-            pins: pins.iter().map(|pin| PinEntry { vertex: pin.vertex, direction: pin.direction }).collect(),
+            pins: pins
+                .iter()
+                .map(|pin| PinEntry {
+                    vertex: pin.vertex,
+                    direction: pin.direction,
+                    degree: pin.of_vertices.then_some(1),
+                })
+                .collect(),
         }
     }
 }

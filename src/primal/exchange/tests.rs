@@ -15,7 +15,9 @@ fn written(problem: &Problem, pins: &[Pin]) -> Value {
 fn conditions_become_entries_and_free_edges_none() {
     let mut problem = pressed_square();
     problem.conditions[3] = Condition::Clamped([[0.25, -0.5]; 2]);
-    let file = written(&problem, &[Pin { vertex: 2, direction: [0.0, 1.0] }]);
+    let pin = |vertex, of_vertices| Pin { vertex, direction: [0.0, 1.0], of_vertices };
+    let pins = [pin(2, false), pin(1, true)];
+    let file = written(&problem, &pins);
     assert_eq!(file["format"], "hypercircle-exchange");
     assert_eq!(file["kinematics"], "plane-stress");
     assert_eq!(file["roller"], json!([{"edge": 0, "normal": [0.0, -1.0], "displacement": 0.0}]));
@@ -25,7 +27,8 @@ fn conditions_become_entries_and_free_edges_none() {
     assert_eq!(file["contacts"][0]["pairs"][0]["edges"], json!([1, null]));
     assert_eq!(file["contacts"][0]["pairs"][0]["second"], Value::Null);
     assert_eq!(file["edges"][2], json!([2, 0]));
-    assert_eq!(file["pins"], json!([{"vertex": 2, "direction": [0.0, 1.0]}]));
+    let told = json!([{"vertex": 2, "direction": [0.0, 1.0]}, {"vertex": 1, "direction": [0.0, 1.0], "degree": 1}]);
+    assert_eq!(file["pins"], told);
     assert_eq!(written(&pressed_square(), &[])["tractions"].as_array().unwrap().len(), 1);
     assert_eq!(file["quadrilaterals"], Value::Null);
     problem.mesh.cells = crate::mesh::FileCells::find(&[[0, 1, 2, 3]], &problem.mesh.triangles);

@@ -3,7 +3,8 @@
 use super::span::Span;
 use crate::statics::balance::{Cone, RANK};
 use crate::statics::cone;
-use crate::statics::restraint::{Group, Part, Points};
+use crate::statics::openings::Points;
+use crate::statics::restraint::{Group, Part};
 use nalgebra::{DMatrix, DVector};
 
 /// The allowed motions of a group.
@@ -18,19 +19,19 @@ pub(in crate::statics) struct DenseCone<'a> {
 }
 
 impl<'a> DenseCone<'a> {
-    /// From rows that must vanish and the two points of each contact run where the jump must not be positive.
+    /// From rows that must vanish and the points of contact runs where jumps must not be positive.
     pub fn new(group: &'a Group<'a>, vanishing: &[Part], points: Points) -> Self {
         let supports = group.span(vanishing);
         let mut fixed = supports.clone();
         let ties: Vec<_> = group
             .runs
             .iter()
-            .flat_map(|run| group.ties(run))
+            .flat_map(|run| group.ties(run, points))
             .map(|row| supports.residual(&group.dense(&row)))
             .collect();
         fixed.extend(&ties, RANK);
         let held = fixed.complement();
-        let jumps = group.runs.iter().flat_map(|run| points.of(run).map(|point| group.jump(run, point)));
+        let jumps = group.runs.iter().flat_map(|run| group.jumps(run, points));
         let rows = jumps
             .map(|row| held.residual(&supports.residual(&group.dense(&row))))
             .filter(|row| row.norm() > RANK)

@@ -15,7 +15,8 @@ use super::interior;
 use super::span::Span;
 use super::sparse::{CORRECTIONS, Row, Triangular, dense, dot, least_squares, norm, transposed};
 use crate::statics::balance::{Cone, RANK};
-use crate::statics::restraint::{Group, Part, Points, along};
+use crate::statics::openings::Points;
+use crate::statics::restraint::{Group, Part, along};
 
 /// Forces and pulls below this fraction of the loads are round-off.
 const ROUND_OFF: f64 = 1e-13;
@@ -38,7 +39,7 @@ pub(in crate::statics) struct SparseCone<'a> {
 }
 
 impl<'a> SparseCone<'a> {
-    /// From rows (member, row) that must vanish and the two points of each contact run where the jump must not be positive.
+    /// From rows (member, row) that must vanish and the points of contact runs where jumps must not be positive.
     pub fn new(group: &'a Group<'a>, vanishing: &[Part], points: Points) -> Self {
         let members = group.members.len();
         let mut supports = vec![Vec::new(); members];
@@ -61,11 +62,12 @@ impl<'a> SparseCone<'a> {
             coordinates += free[m].len();
         }
         let mut cone = SparseCone { group, points, start, free, coordinates, held: Vec::new(), rows: Vec::new() };
-        let ties: Vec<Row> = group.runs.iter().flat_map(|run| group.ties(run)).map(|row| cone.row(&row)).collect();
+        let ties: Vec<Row> =
+            group.runs.iter().flat_map(|run| group.ties(run, points)).map(|row| cone.row(&row)).collect();
         if !interior::see_every_motion(&ties, coordinates) {
             cone.held = Triangular::of(coordinates, &ties).null_vectors();
         }
-        let jumps = group.runs.iter().flat_map(|run| points.of(run).map(|point| group.jump(run, point)));
+        let jumps = group.runs.iter().flat_map(|run| group.jumps(run, points));
         cone.rows = jumps.map(|row| cone.row(&row)).filter(|row| norm(row) > RANK).map(unit).collect();
         cone.rows.sort_by_key(|row| row.last().map(|entry| entry.0));
         cone

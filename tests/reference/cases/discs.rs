@@ -1,7 +1,8 @@
-//! A disc in its bore: it turns freely, and rests where it is pressed through its centre.
+//! A disc in its bore: it turns freely, and rests where it is pressed through its centre. A ring on a pin, which turns freely about the
+//! centre of both alone.
 
 use super::run::{Run, with_reference};
-use crate::arcs::disc;
+use crate::arcs::{disc, ring_on_pin};
 
 fn written(text: &str) -> (tempfile::TempDir, std::path::PathBuf) {
     let folder = tempfile::tempdir().expect("a folder");
@@ -45,5 +46,15 @@ fn refined_towards_a_tolerance_it_stays_at_rest() {
         let report = run.report();
         assert!(report.number("/energy/relative_error_bound") <= 0.02, "{adapt}");
         assert!(report.notes().contains("slides freely along it"), "{}", report.notes());
+    }
+}
+
+/// What nothing holds but an overlap has a size all the same, and what the vertices of P1 leave free those of P2 hinder.
+#[test]
+fn on_a_pin_beside_its_centre_both_models_agree() {
+    for centre in [[0.0, 0.0], [1e-5, 2e-5], [-0.2, 0.1]] {
+        let (_folder, scene) = written(&ring_on_pin(centre));
+        let run = Run::new(if with_reference() { "verify" } else { "solve" }, &scene, &[]);
+        assert_eq!(run.code, Some(0), "{centre:?}: {}{}", run.stdout, run.stderr);
     }
 }
