@@ -108,6 +108,7 @@ class _Traction(TypedDict, total=False):
     value: _Point
     gradient: Sequence[_Point]
     pressure: float
+    terms: Sequence[dict[str, Any]]
 
 class _Contact(TypedDict, total=False):
     between: Sequence[str]
@@ -118,6 +119,7 @@ class _Contact(TypedDict, total=False):
     obstacle: dict[str, Any]
     move: _Point
     stiffness: _Range
+    friction: dict[str, Any]
 
 class _Bond(TypedDict, total=False):
     between: Sequence[str]
@@ -336,7 +338,7 @@ class Quantity:
     @property
     def name(self) -> str: ...
     @property
-    def kind(self) -> Literal["displacement", "force", "moment", "stress"]: ...
+    def kind(self) -> Literal["displacement", "force", "moment", "stress", "stress_intensity"]: ...
     @property
     def value(self) -> float | None: ...
     @property

@@ -11,16 +11,40 @@ import sysconfig
 import numpy as np
 
 
+# Names that programs give a displacement, in lower case; the first has precedence, as in files.
+USUAL = ("displacement", "u", "disp")
+
+
 def field(of, values=None, name=None):
     """Points, triangles and displacement of an object of another program."""
     if hasattr(of, "function_space") and hasattr(of, "x"):
+        _alone("a dolfinx.fem.Function", values=values, name=name)
         return _of_dolfinx(of)
     if hasattr(of, "doflocs") and hasattr(of, "nodal_dofs"):
+        _alone("a skfem basis", name=name)
         return _of_skfem(of, values)
     if hasattr(of, "cells_dict") and hasattr(of, "point_data"):
+        _alone("a meshio.Mesh", values=values)
         return _of_meshio(of, name)
     kinds = "a dolfinx.fem.Function, a skfem basis with its values, or a meshio.Mesh"
     raise TypeError(f"a field is {kinds}, not {type(of).__name__}; give points, triangles and displacement as arrays")
+
+
+def _alone(of, **others):
+    """Refuses arguments that would do nothing."""
+    for argument, given in others.items():
+        if given is not None:
+            raise ValueError(f"{of} has no use for {argument}; leave it out")
+
+
+def _real(values, of):
+    """The values, where they are real."""
+    values = np.asarray(values)
+    if np.iscomplexobj(values):
+        if np.any(values.imag != 0.0):
+            raise ValueError(f"the values of {of} are complex; give their real part as arrays")
+        values = values.real
+    return values
 
 
 def _of_dolfinx(function):
@@ -35,35 +59,55 @@ def _of_dolfinx(function):
     order = {3: [0, 1, 2], 6: [0, 1, 2, 5, 3, 4]}.get(cells.shape[1] if mesh.topology.dim == 2 else 0)
     if size != 2 or order is None:
         raise ValueError("the function is no Lagrange vector of degree 1 or 2 on triangles; interpolate it into one")
-    points = space.tabulate_dof_coordinates()[:, :2]
-    return points, cells[:, order], np.real(function.x.array).reshape(-1, 2)[: len(points)]
+    points = _plane(space.tabulate_dof_coordinates())
+    return points, cells[:, order], _real(function.x.array, "the function").reshape(-1, 2)[: len(points)]
 
 
 def _of_skfem(basis, values):
     if values is None:
         raise TypeError("a basis needs its values: field(basis, u)")
-    values, cells = np.asarray(values), basis.mesh.t.T
+    values, cells = _real(values, "the basis"), basis.mesh.t.T
     if cells.shape[1] != 3 or basis.nodal_dofs.shape[0] != 2 or basis.interior_dofs.size:
         raise ValueError("the basis is no vector of degree 1 or 2 on triangles; interpolate into one")
-    points, displacement = basis.mesh.p.T, values[basis.nodal_dofs].T
+    if values.shape != (basis.N,):
+        raise ValueError(f"the values have the shape {values.shape}; give {basis.N} numbers, one for each unknown of the basis")
+    corners = basis.nodal_dofs.shape[1]
+    points, displacement = basis.mesh.p.T[:corners], values[basis.nodal_dofs].T
+    middles = points[basis.mesh.facets].mean(axis=0)
+    own = basis.mesh.p.T[corners:]
+    if own.size and (own.shape != middles.shape or np.abs(own - middles).max() > 1e-12 * np.abs(points).max()):
+        raise ValueError("the mesh of the basis has curved sides; give a field on a mesh with straight ones")
     if basis.facet_dofs.size:
         if basis.facet_dofs.shape[0] != 2:
             raise ValueError("the basis is no vector of degree 1 or 2 on triangles; interpolate into one")
         # Facets of a triangle: (0, 1), (1, 2), (0, 2).
-        cells = np.hstack([cells, len(points) + basis.mesh.t2f.T])
-        points = np.vstack([points, basis.mesh.p[:, basis.mesh.facets].mean(axis=1).T])
+        cells = np.hstack([cells, corners + basis.mesh.t2f.T])
+        points = np.vstack([points, middles])
         displacement = np.vstack([displacement, values[basis.facet_dofs].T])
     return points, cells, displacement
 
 
 def _of_meshio(mesh, name):
-    cells = [mesh.cells_dict[kind] for kind in ("triangle", "triangle6") if kind in mesh.cells_dict]
-    if len(cells) != 1:
-        raise ValueError(f"the mesh has the cells {', '.join(mesh.cells_dict)}; one kind of triangles is taken")
-    name = name or next((found for found in mesh.point_data if found.lower() in ("displacement", "u", "disp")), None)
+    kinds = [kind for kind in mesh.cells_dict if kind not in ("vertex", "line", "line3")]
+    if kinds not in (["triangle"], ["triangle6"]):
+        raise ValueError(f"the mesh has the cells {', '.join(mesh.cells_dict) or 'none'}; one kind of triangles is taken")
+    if name is None:
+        found = sorted((USUAL.index(known.lower()), known != known.lower(), known) for known in mesh.point_data if known.lower() in USUAL)
+        name = found[0][2] if found else None
     if name not in mesh.point_data:
         raise ValueError(f"the mesh has the point data {', '.join(mesh.point_data) or 'none'}; say which is the displacement with name")
-    return mesh.points[:, :2], cells[0], mesh.point_data[name][:, :2]
+    return _plane(mesh.points), mesh.cells_dict[kinds[0]], _plane(mesh.point_data[name])
+
+
+def _plane(rows):
+    """The rows without third components, where these are zero; others are for who takes the field to refuse."""
+    rows = np.asarray(rows)
+    return rows[:, :2] if rows.ndim == 2 and rows.shape[1] == 3 and not rows[:, 2].any() else rows
+
+
+def copied(data):
+    """A copy of what JSON can hold: who changes it changes nothing else."""
+    return json.loads(json.dumps(data))
 
 
 def toml(data):

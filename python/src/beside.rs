@@ -38,6 +38,14 @@ pub fn toml(data: &Bound<'_, PyDict>) -> PyResult<String> {
     beside(data.py())?.call_method1("toml", (data,)).map_err(known)?.extract()
 }
 
+/// A copy of a part of a report, to be handed out: a change of it changes no verdict.
+///
+/// # Errors
+/// Of the interpreter alone.
+pub fn copied<'py>(part: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    beside(part.py())?.call_method1("copied", (part,))
+}
+
 /// A list of a report as columns.
 ///
 /// # Errors
@@ -97,8 +105,8 @@ pub fn plot<'py>(
 }
 
 /// Points, triangles and displacement of a field of another program, to be handed to `certify` or `diagnose`: of a `dolfinx.fem.Function`,
-/// of a scikit-fem basis with its `values`, or of a `meshio.Mesh`, whose point data is called `name`. Lagrange vectors of degree 1 and 2 on
-/// triangles are taken.
+/// of a scikit-fem basis with its `values`, or of a `meshio.Mesh`, whose point data is called `name`. Real Lagrange vectors of degree 1 and 2
+/// on straight-sided triangles are taken.
 ///
 /// Raises `InputError` for others, `TypeError` for what is no field.
 #[pyfunction]

@@ -36,7 +36,7 @@ pub struct Claims<'a, 'py> {
     pub values: Option<&'a Bound<'py, PyDict>>,
     /// Tolerances of checks.
     pub allow: Option<&'a Bound<'py, PyDict>>,
-    /// The largest relative error that passes.
+    /// The guaranteed relative error of the stresses below which their refinement ends.
     pub tolerance: Option<f64>,
     /// Folder of the report.
     pub out: Option<PathBuf>,
@@ -65,9 +65,18 @@ impl Claims<'_, '_> {
             [None, None, None] => None,
             _ => return Err(fault("a field is points, triangles and displacement; give all three")),
         };
-        if arrays.is_some() == self.file.is_some() && (arrays.is_some() || self.values.is_none()) {
+        let claims_values = self.values.is_some_and(|values| !values.is_empty());
+        if arrays.is_some() == self.file.is_some() && (arrays.is_some() || !claims_values) {
             return Err(fault(
                 "one thing has to be certified; give points, triangles and displacement, or a file, or values",
+            ));
+        }
+        if self.file.is_none() && self.field.is_some() {
+            return Err(fault("field names the point data of a file, and there is none; leave it out"));
+        }
+        if self.file.is_none() && arrays.is_none() && self.solution {
+            return Err(fault(
+                "solution is about a displacement field, and only values are certified; leave it out, or give the field",
             ));
         }
         let line = how
@@ -170,8 +179,9 @@ pub struct Certificate {
 }
 
 impl Certificate {
+    /// A copy of an entry.
     fn entry<'py>(&self, py: Python<'py>, keys: &[&str]) -> PyResult<Bound<'py, PyAny>> {
-        keys.iter().try_fold(self.report.bind(py).clone(), |entry, key| entry.get_item(*key))
+        beside::copied(&keys.iter().try_fold(self.report.bind(py).clone(), |entry, key| entry.get_item(*key))?)
     }
 
     fn first<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
@@ -246,8 +256,8 @@ impl Certificate {
 
     /// Everything that `report.json` holds, as a dictionary; `hypercircle schema report` describes it.
     #[getter]
-    fn report(&self, py: Python<'_>) -> Py<PyAny> {
-        self.report.clone_ref(py)
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.entry(py, &[])
     }
 
     /// A list of the report as a dictionary of columns, as `pandas.DataFrame` takes it: `checks`, `remarks`, `quantities`, `contacts`,

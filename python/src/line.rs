@@ -84,8 +84,8 @@ fn refused(error: clap::Error) -> PyErr {
     });
     let (Some(name), Some(value)) = (name, text(ContextKind::InvalidValue)) else {
         let whole = error.to_string();
-        let first = whole.lines().next().unwrap_or_default().trim_start_matches("error: ");
-        return raised(Exit::BadInput, first.to_string(), "");
+        let said: Vec<&str> = whole.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();
+        return raised(Exit::BadInput, said.join(" ").trim_start_matches("error: ").to_string(), "");
     };
     match error.source() {
         Some(reason) => raised(Exit::BadInput, format!("{name} = {value}: {reason}"), &known),

@@ -61,7 +61,16 @@ impl Solution {
     }
 
     fn entry<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
-        self.report(py)?.get_item(key)
+        beside::copied(&self.own_report(py)?.get_item(key)?)
+    }
+
+    /// The report, made once.
+    fn own_report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let made = || {
+            let text = py.detach(|| self.with_dossier(|dossier| serde_json::to_string(&dossier.report)));
+            super::from_json(py, text).map(Bound::unbind)
+        };
+        Ok(self.report.get_or_try_init(py, made)?.bind(py).clone())
     }
 }
 
@@ -100,11 +109,7 @@ impl Solution {
     /// Everything that `report.json` holds, as a dictionary; `hypercircle schema report` describes it.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let made = || {
-            let text = py.detach(|| self.with_dossier(|dossier| serde_json::to_string(&dossier.report)));
-            super::from_json(py, text).map(Bound::unbind)
-        };
-        Ok(self.report.get_or_try_init(py, made)?.bind(py).clone())
+        beside::copied(&self.own_report(py)?)
     }
 
     /// The quantities of the scene by name, each with the interval that holds its exact value.
@@ -329,7 +334,7 @@ impl Solution {
     /// A list of the report as a dictionary of columns, as `pandas.DataFrame` takes it: `checks`, `remarks`, `quantities`, `contacts`,
     /// `history`. Parts of an entry have dots in their names.
     fn table<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        beside::table(&self.report(py)?, name)
+        beside::table(&self.own_report(py)?, name)
     }
 
     /// The mesh as a `pyvista.UnstructuredGrid`: the cell data are `body`, the mean stress by component (`stress_xx`, …) and the numbers in
@@ -359,7 +364,7 @@ impl Solution {
 
     /// Verdict and intervals, for a notebook.
     fn _repr_html_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        beside::page(&self.report(py)?)
+        beside::page(&self.own_report(py)?)
     }
 
     fn __repr__(&self) -> String {

@@ -101,6 +101,8 @@ def test_element_knows_its_own_and_judges_others(call):
         ("solve", {"scene": SCENE.replace("plate.msh", "../outside.msh")}, "folder of this server"),
         ("verify", {"scene": SCENE, "primal_degree": [0]}, "primal_degree"),
         ("certify", {"scene": SCENE}, "one thing has to be certified"),
+        ("certify", {"scene": SCENE, "values": {"tip": 1}, "solution": True}, "only values are certified"),
+        ("certify", {"scene": SCENE, "values": {"tip": 1}, "field": "zz"}, "there is none"),
         ("certify", {"scene": SCENE, "file": "/etc/passwd"}, "folder of this server"),
         ("certify", {"scene": SCENE, "file": "field.vtk", "values": {"no": 1}}, "no quantity 'no'"),
         ("diagnose", {"scene": SCENE, **ARRAYS}, "give all three"),
@@ -108,6 +110,9 @@ def test_element_knows_its_own_and_judges_others(call):
         ("diagnose", {"scene": SCENE, "points": [[0, 0]], "triangles": [[0, 1, 99]], "displacement": [[0, 0]]}, "beyond the 1"),
         ("element", {"name": "no-such"}, "there is no element"),
         ("element", {"matrix": [[1], [1, 2]], "nodes": [[0, 0]]}, "row 1"),
+        ("element", {"nodes": [[0, 0]]}, "there is none"),
+        ("element", {"young": 1}, "there is none"),
+        ("element", {"matrix": [[1]], "nodes": [[0, 0]], "thickness": 2}, "give all three"),
         ("element", {"matrix": [], "nodes": []}, "nodes"),
     ],
 )  # fmt: skip

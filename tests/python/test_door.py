@@ -209,6 +209,15 @@ def test_fields_of_scikit_fem_are_taken(hypercircle, tmp_path):
         certificate = scene.certify(*hypercircle.field(basis, u), solution=True)
         assert certificate.passed, certificate.verdict
         assert scene.diagnose(*hypercircle.field(basis, 1.1 * u)) is not None
+        # A mesh of second order with straight sides has the middles of its edges among its points.
+        second = skfem.MeshTri2.from_mesh(mesh)
+        same = hypercircle.field(skfem.Basis(second, skfem.ElementVector(element)), u)
+        assert all((a == b).all() for a, b in zip(same, hypercircle.field(basis, u)))
+        bent = second.doflocs.copy()
+        bent[0, -1] += 1e-3
+        for values, of, reason in ((u[1:], basis, "shape"), (u + 1e-9j, basis, "complex"), (u, skfem.Basis(skfem.MeshTri2(bent, second.t), skfem.ElementVector(element)), "curved")):
+            with pytest.raises(hypercircle.InputError, match=reason):
+                hypercircle.field(of, values)
     with pytest.raises(TypeError, match="field"):
         hypercircle.field(basis)
     with pytest.raises(hypercircle.InputError, match="degree 1 or 2 on triangles"):
@@ -295,6 +304,10 @@ def test_functions_of_dolfinx_are_taken(hypercircle, tmp_path):
             middles = [(found[cells[:, a]] + found[cells[:, b]]) / 2 for a, b in ((0, 1), (1, 2), (2, 0))]
             assert np.allclose(found[cells[:, 3:]], np.stack(middles, axis=1))
         assert scene.certify(found, cells, displacement).relative_error_bound > 0
+    # What a build for complex numbers has.
+    turned = types.SimpleNamespace(function_space=u.function_space, x=types.SimpleNamespace(array=u.x.array + 1e-12j))
+    with pytest.raises(hypercircle.InputError, match="complex"):
+        hypercircle.field(turned)
     scalar = dolfinx.fem.Function(dolfinx.fem.FunctionSpace(mesh, ("Lagrange", 1)))
     with pytest.raises(hypercircle.InputError, match="no Lagrange vector"):
         hypercircle.field(scalar)
@@ -308,8 +321,43 @@ def test_meshes_of_meshio_are_taken(hypercircle):
     assert (found == points[:, :2]).all() and (displacement == found).all() and (cells == [[0, 1, 2]]).all()
     with pytest.raises(hypercircle.InputError, match="name"):
         hypercircle.field(mesh, name="v")
+    with pytest.raises(hypercircle.InputError, match="no use for values"):
+        hypercircle.field(mesh, points)
+    both = meshio.Mesh(points, mesh.cells, point_data={"u": 2 * points, "displacement": points})
+    assert (hypercircle.field(both)[2] == points[:, :2]).all()
+    mixed = meshio.Mesh(np.vstack([points, [[1, 1, 0]]]), [("triangle", [[0, 1, 2]]), ("quad", [[0, 1, 3, 2]])], point_data={"u": np.zeros((4, 3))})
+    with pytest.raises(hypercircle.InputError, match="cells triangle, quad"):
+        hypercircle.field(mixed)
     with pytest.raises(TypeError, match="no|not"):
         hypercircle.field(7)
+
+
+def test_what_a_mesh_has_out_of_the_plane_is_not_forgotten(hypercircle):
+    meshio = pytest.importorskip("meshio")
+    scene = hypercircle.Scene(CASES / "patch.toml")
+    solution = scene.solve()
+    solid = lambda plane, third: np.column_stack([plane, np.zeros(len(plane)) + third])
+    points, u = solution.points, solution.displacement
+    made = lambda points, u: hypercircle.field(meshio.Mesh(points, [("triangle", np.array(solution.triangles))], point_data={"u": u}))
+    assert scene.certify(*made(solid(points, 0), solid(u, 0)), solution=True).passed
+    for field in (made(solid(points, 3 * points[:, 0]), solid(u, 0)), made(solid(points, 0), solid(u, 7)), made(solid(points, 0), solid(u, np.nan))):
+        with pytest.raises(hypercircle.InputError):
+            scene.certify(*field, solution=True)
+
+
+def test_a_report_that_is_changed_changes_no_verdict(hypercircle):
+    scene = hypercircle.Scene(CASES / "patch.toml")
+    solution = scene.solve()
+    wrong = solution.certify(solution.points, solution.triangles, 0.5 * solution.displacement, solution=True)
+    for found in (wrong, solution):
+        status, checks = found.status, len(found.report["checks"])
+        found.report["status"] = "agree" if status == "disagree" else "disagree"
+        found.report["checks"].clear()
+        assert found.status == status and len(found.report["checks"]) == checks
+    wrong.checks.clear()
+    wrong.causes.clear()
+    wrong.diagnosis["findings"].clear()
+    assert not wrong.passed and wrong.checks and wrong.causes and wrong.diagnosis["findings"]
 
 
 def test_ctrl_c_ends_a_solve():

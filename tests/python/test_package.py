@@ -177,6 +177,9 @@ def test_what_is_no_field_says_what_to_do(hypercircle):
     assert "'tip'" in refused(values={"tip": 1.0})
     assert "beauty" in refused(points, triangles, u, allow={"beauty": 1.0})
     assert "nope.vtu" in refused(file="nope.vtu")
+    assert "field names" in refused(points, triangles, u, field="zz")
+    assert "one thing" in refused(values={})
+    assert "only values are certified" in refused(values={"tip": 1.0}, solution=True)
 
 
 def test_a_field_is_certified_as_the_command_does(hypercircle, tmp_path):

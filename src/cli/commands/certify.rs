@@ -78,6 +78,7 @@ pub struct Args {
 /// # Errors
 /// The scene or the field is refused, or no answer can be given.
 pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
+    args.solve.say_unheard(&args.limits, args.run.quiet);
     let order = Order {
         command: "certify",
         scenes: &args.scenes,

@@ -387,7 +387,7 @@ pub fn tolerance_check(certified: &Certified, comparison: &Comparison, tolerance
             0.0,
             allowed,
             Basis::Asked,
-            "The guaranteed relative energy-norm error against the tolerance that was asked for.",
+            "The guaranteed relative energy-norm error of the stresses against the tolerance that was asked for.",
         ),
         None => Check::not_made(name, allowed, Basis::Asked, "There is no upper bound to hold the tolerance against."),
     }

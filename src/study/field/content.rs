@@ -125,8 +125,7 @@ impl ForeignField {
             content.points.truncate(rows.len());
             content.cells.iter_mut().for_each(|nodes| nodes.truncate(3));
         }
-        let points: Option<Vec<[f64; 2]>> =
-            content.points.iter().map(|p| Some([*p.first()?.as_ref()?, *p.get(1)?.as_ref()?])).collect();
+        let points: Option<Vec<[f64; 2]>> = content.points.iter().map(|p| plane(p)).collect();
         let Some(points) = points else {
             return Err(fault("a point has no finite coordinates".into(), "write the file again"));
         };
@@ -157,8 +156,7 @@ impl ForeignField {
             let what = format!("its points are not in one plane z = constant: z goes from {low} to {high}");
             return Err(fault(what, "this program is plane: write the field in the plane z = 0"));
         }
-        let values: Vec<Option<[f64; 2]>> =
-            rows.iter().map(|r| Some([*r.first()?.as_ref()?, *r.get(1)?.as_ref()?])).collect();
+        let values: Vec<Option<[f64; 2]>> = rows.iter().map(|row| plane(row)).collect();
         let single = data.single || content.single;
         let numbers = values.iter().flatten().flatten().copied();
         let of_format = if single { 0.0 } else { digits::of_format(file) };
@@ -177,6 +175,12 @@ impl ForeignField {
             far,
         })
     }
+}
+
+/// The first two of some numbers, where all of them are finite.
+fn plane(numbers: &[Option<f64>]) -> Option<[f64; 2]> {
+    let all: Option<Vec<f64>> = numbers.iter().copied().collect();
+    all.and_then(|all| all.get(..2)?.try_into().ok())
 }
 
 type Chosen<'a> = (&'a str, &'a Data);

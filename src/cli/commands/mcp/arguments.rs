@@ -75,7 +75,8 @@ pub struct Certify {
     /// Values of quantities of the scene, from elsewhere, to hold against their intervals.
     #[serde(default)]
     pub values: BTreeMap<String, f64>,
-    /// The largest guaranteed relative error that passes; the stresses are refined until it can be told.
+    /// Refine the stresses until their guaranteed relative error is below this. It sharpens what is told of the field, and is no limit of the
+    /// error of the field, which is `primal[0].relative_error_bound`.
     #[serde(default)]
     pub tolerance: Option<f64>,
 }
@@ -139,16 +140,18 @@ pub struct Element {
     pub kinematics: Option<PlaneState>,
     /// How its rows are numbered; x and y of the first node come first where it is missing.
     #[serde(default)]
-    pub order: Numbering,
+    pub order: Option<Numbering>,
     /// How exact its entries are, relative to the largest.
     #[serde(default)]
     pub precision: Option<f64>,
 }
 
 impl Element {
-    /// True if something is said of a material, or of the digits of a matrix.
-    pub fn has_material(&self) -> bool {
-        [self.young, self.poisson, self.thickness, self.precision].iter().any(Option::is_some)
+    /// True if something is said of a matrix or of its material.
+    pub fn is_of_matrix(&self) -> bool {
+        let numbers = [self.young, self.poisson, self.thickness, self.precision];
+        let others = self.nodes.is_some() || self.kinematics.is_some() || self.order.is_some();
+        others || numbers.iter().any(Option::is_some)
     }
 }
 
@@ -163,11 +166,10 @@ pub enum PlaneState {
 }
 
 /// How the unknowns of a matrix are numbered.
-#[derive(Debug, Clone, Copy, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Numbering {
     /// x0, y0, x1, …
-    #[default]
     Interleaved,
     /// x0, x1, …, y0, …
     Blocked,

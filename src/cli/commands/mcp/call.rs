@@ -113,6 +113,15 @@ impl Call {
             let remedy = "give a file, or points, triangles and displacement, or (to certify) values";
             return Err(bad("one thing has to be certified", remedy));
         }
+        if file.is_none() && field.is_some() {
+            return Err(bad("field names the point data of a file, and there is none", "leave it out, or give a file"));
+        }
+        if solution && file.is_none() && arrays.is_none() {
+            return Err(bad(
+                "solution is about a displacement field, and only values are certified",
+                "leave it out, or give the field",
+            ));
+        }
         // An option in the place of what is set below.
         let mut args: certify::Args = defaults(&["--displacement=displacement"])?;
         self.stresses(&mut args.solve, None, None)?;
@@ -189,11 +198,18 @@ fn examined(asked: Element) -> Result<Answer, CliError> {
     let refused = |what: String| bad(what, "");
     match (&asked.name, &asked.matrix) {
         (Some(_), Some(_)) => Err(bad("an element is a name or a matrix", "leave one of them out")),
-        (None, None) => Ok(Answer::list()),
-        (Some(name), None) if asked.nodes.is_some() || asked.kinematics.is_some() || asked.has_material() => {
-            let remedy = "leave nodes, young, poisson, thickness, kinematics and precision out, or give a matrix";
-            Err(bad(format!("{name} comes with its nodes and its material"), remedy))
+        (name, None) if asked.is_of_matrix() => {
+            let remedy =
+                "leave nodes, order, young, poisson, thickness, kinematics and precision out, or give a matrix";
+            Err(bad(
+                match name {
+                    Some(name) => format!("{name} comes with its nodes and its material"),
+                    None => "nodes and a material belong to a matrix, and there is none".to_string(),
+                },
+                remedy,
+            ))
         }
+        (None, None) => Ok(Answer::list()),
         (Some(name), None) => {
             let remedy = || format!("choose from {}", SHIPPED.iter().map(|s| s.name).collect::<Vec<_>>().join(", "));
             let known =
@@ -219,8 +235,8 @@ fn element_of(asked: &Element, rows: &[Vec<f64>]) -> Result<DisplacementElement,
     }
     let matrix = DMatrix::from_row_slice(rows.len(), columns, &rows.concat());
     let order = match asked.order {
-        Numbering::Interleaved => Order::Interleaved,
-        Numbering::Blocked => Order::Blocked,
+        None | Some(Numbering::Interleaved) => Order::Interleaved,
+        Some(Numbering::Blocked) => Order::Blocked,
     };
     let state = asked.kinematics.map(|state| match state {
         PlaneState::PlaneStrain => Kinematics::PlaneStrain,
@@ -230,8 +246,14 @@ fn element_of(asked: &Element, rows: &[Vec<f64>]) -> Result<DisplacementElement,
         (Some(young), Some(poisson), Some(state)) => {
             Some(Material::new(state, young, poisson, asked.thickness.unwrap_or(1.0))?)
         }
-        (None, None, _) => None,
-        _ => return Err("a material is young, poisson and kinematics; give all three, or none".into()),
+        (None, None, None) if asked.thickness.is_none() => None,
+        _ => {
+            return Err(
+                "a material is young, poisson and kinematics, with a thickness where it is not 1; give all three, \
+                        or none of the four"
+                    .into(),
+            );
+        }
     };
     let element = DisplacementElement::of_matrix("matrix", &matrix, nodes, order, material)?;
     let usual = element.precision;
