@@ -24,10 +24,7 @@ fn what_would_not_be_heard_is_refused() {
     let folder = folder();
     let scene = "two_blocks.toml";
     for (arguments, words) in [
-        (&["solve", scene, "--adapt", "h"][..], ["--adapt", "add --tolerance"]),
-        (&["solve", scene, "--max-triangles", "5"], ["--max-triangles", "add --tolerance"]),
-        (&["solve", scene, "--max-seconds", "1e-6"], ["--max-seconds", "leave --max-seconds out"]),
-        (&["verify", scene, "--reason", "because"], ["nothing is accepted", "--accept"]),
+        (&["verify", scene, "--reason", "because"][..], ["nothing is accepted", "--accept"]),
         (&["verify", scene, "--baseline", "b.json", "--accept", "--reason", "x"], ["in JSON has no place", ".toml"]),
         (
             &["verify", scene, "--baseline", "b.toml", "--accept", "--reason", "x", "--shard", "1/2"],
@@ -46,6 +43,21 @@ fn what_would_not_be_heard_is_refused() {
         refused(folder.path(), arguments, &words);
     }
     assert!(!folder.path().join("out").exists(), "nothing was written");
+}
+
+/// What says how to refine, and not how far, is a remark: a script that always gives limits is right to.
+#[test]
+fn limits_of_a_refinement_that_nobody_asked_for_are_told() {
+    let folder = folder();
+    for (option, value) in [("--adapt", "h"), ("--max-triangles", "5"), ("--max-seconds", "1e-6")] {
+        let arguments = ["solve", "two_blocks.toml", option, value];
+        ended(option, &run(hypercircle(folder.path(), arguments)), 0, &[option, "none is given", "Add --tolerance"]);
+        let said = ended(option, &run(hypercircle(folder.path(), [&arguments[..], &["-q"]].concat())), 0, &[]);
+        assert!(!said.contains(option), "{said}");
+    }
+    let value = ["certify", "two_blocks.toml", "--value", "force=1", "--max-triangles", "5"];
+    let said = run(hypercircle(folder.path(), value));
+    assert!(String::from_utf8_lossy(&said.stderr).contains("--max-triangles"), "{said:?}");
 }
 
 #[test]

@@ -40,7 +40,7 @@ pub struct Args {
 /// # Errors
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
-    args.refuse_unheard()?;
+    args.solve.say_unheard(&args.limits, args.run.quiet);
     let order = Order {
         command: "solve",
         scenes: &args.scenes,
@@ -53,28 +53,6 @@ pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
         own: &|_| Ok(Own::default()),
     };
     job::run(&order, |scene| one(args, scene))
-}
-
-impl Args {
-    /// Refuses what says how to refine where nothing says how far.
-    fn refuse_unheard(&self) -> Result<(), CliError> {
-        let Limits { max_triangles, max_seconds } = self.limits;
-        let options = [
-            ("--adapt", self.solve.adapt.is_some()),
-            ("--max-triangles", max_triangles.is_some()),
-            ("--max-seconds", max_seconds.is_some()),
-        ];
-        match options.into_iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) if !self.solve.is_adaptive() => Err(CliError::stopped(
-                Exit::BadInput,
-                format!(
-                    "{option} is about refinement towards a tolerance, and none is given: the mesh is solved on as it is"
-                ),
-                format!("add --tolerance X or --tolerance-of NAME=X, or leave {option} out"),
-            )),
-            _ => Ok(()),
-        }
-    }
 }
 
 fn one(args: &Args, scene: &Path) -> Result<Exit, CliError> {

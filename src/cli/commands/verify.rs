@@ -110,6 +110,7 @@ impl Args {
 /// # Errors
 /// The scene is refused, or no answer can be given.
 pub fn run(args: &Args, given: &Given) -> Result<Exit, CliError> {
+    args.solve.say_unheard(&args.limits, args.run.quiet);
     let order = Order {
         command: "verify",
         scenes: &args.scenes,

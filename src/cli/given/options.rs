@@ -6,6 +6,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum, value_parser};
 
 use crate::budget::{self, Budget};
+use crate::cli::words::say;
 use crate::cli::{CliError, Exit};
 use crate::dual::{LinearSolver, Solver};
 use crate::element::Elements;
@@ -99,6 +100,22 @@ impl SolveOptions {
     /// True if the mesh is refined adaptively.
     pub fn is_adaptive(&self) -> bool {
         self.tolerance.is_some() || !self.tolerance_of.is_empty()
+    }
+
+    /// Says, unless `quiet`, which option on refinement does nothing because no tolerance says how far to refine.
+    pub fn say_unheard(&self, limits: &Limits, quiet: bool) {
+        let given = [
+            ("--adapt", self.adapt.is_some()),
+            ("--max-triangles", limits.max_triangles.is_some()),
+            ("--max-seconds", limits.max_seconds.is_some()),
+        ];
+        let idle = given.into_iter().find(|(_, is_given)| *is_given && !self.is_adaptive());
+        if let Some((option, _)) = idle.filter(|_| !quiet) {
+            say::complaint(&format!(
+                "{option} is about refinement towards a tolerance, and none is given: the mesh is solved on as it is. Add \
+                 --tolerance X or --tolerance-of NAME=X"
+            ));
+        }
     }
 
     /// The quantities that are to be known more closely.
