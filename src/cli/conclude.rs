@@ -9,7 +9,8 @@ use crate::cause::{outcome, told};
 use crate::compare::Comparison;
 use crate::compare::name::{Name, OfSolutionContact};
 use crate::diagnose::{Diagnosis, Finding};
-use crate::problem::Note;
+use crate::mesh::touching;
+use crate::problem::{Note, Problem};
 use crate::report::{self, BaselineRow, Dossier, Report, Status};
 use crate::study::{Answer, Certified, Fields, Findings, Sharpened, assemble};
 
@@ -54,7 +55,7 @@ impl Session {
     ) -> Result<Exit, CliError> {
         self.with_dossier(run, comparison, particulars, |mut dossier| {
             self.sign(&mut dossier);
-            self.close(&dossier, folder)
+            self.close(&dossier, &run.certified.problem, folder)
         })
     }
 
@@ -127,13 +128,15 @@ impl Session {
         }
     }
 
-    fn close(&self, dossier: &Dossier<'_>, folder: &Path) -> Result<Exit, CliError> {
+    fn close(&self, dossier: &Dossier<'_>, problem: &Problem, folder: &Path) -> Result<Exit, CliError> {
         self.progress.phase("writing the report");
         let replaced = report_of_another_command(folder, self.command);
         report::write(dossier, folder)?;
         ci::report(&dossier.report, &self.scene.path);
         if !self.quiet {
             lines(&dossier.report).iter().for_each(|line| say::line(line));
+            let Problem { mesh, scene, .. } = problem;
+            touching(mesh, scene).iter().for_each(|line| say::line(&format!("  note: {}", line.told(mesh, scene))));
             say::line(&format!("report: {}", folder.join("report.html").display()));
             if let Some(other) = replaced {
                 say::line(&format!("  in place of the report of `{other}` that was there; --out DIR keeps both"));

@@ -49,6 +49,7 @@ mod mesh_dialects;
 mod mesh_files;
 mod mesh_formats;
 mod mesh_inventory;
+mod mesh_misread;
 mod mesh_parts;
 mod mesh_selection;
 mod methods_on_cases;

@@ -10,8 +10,16 @@ use crate::mesh::select::{Cells, Entity, Sets};
 use crate::mesh::{MeshError, RawMesh, Shared};
 use crate::scene::Note;
 
-/// Deviation from the plane, and of a side from its chord, in parts of a length, that counts as round-off.
+/// Deviation of a side from its chord, in parts of its length, that counts as round-off.
 const ROUND_OFF: f64 = 1e-9;
+
+/// Deviation from the plane, in parts of the coordinates, that is none: files have seven digits, and what it changes is of second order.
+const FLAT: f64 = 1e-6;
+
+/// Half of the last of seven digits, which many formats have, in parts of a coordinate, and the largest part of a side that they may put a
+/// node between its corners beside it: the corners are where it is by the same rounding.
+const SEVEN_DIGITS: f64 = 1e-6;
+const BARELY: f64 = 1e-5;
 
 /// Of the length of a side the distance from its corners at which no node between them lies, however curved the side is.
 const FARTHEST: f64 = 2.0;
@@ -123,7 +131,7 @@ impl Content {
         order.sort_unstable();
         let index: HashMap<u64, usize> = order.iter().enumerate().map(|(i, tag)| (*tag, i)).collect();
         let position: Vec<[f64; 3]> = order.iter().map(|tag| self.nodes[tag]).collect();
-        let height = self.height(&index, &position);
+        let (height, size) = (self.height(&index, &position), largest(&position));
         let mut raw = RawMesh { points: position.iter().map(|p| [p[0], p[1]]).collect(), ..RawMesh::default() };
         let mut counts = Counts::default();
         let mut sets = self.sets(&index);
@@ -139,7 +147,7 @@ impl Content {
                 };
                 nodes.push(node);
             }
-            if !is_plane(&nodes, &position, height) {
+            if !is_plane(&nodes, &position, height, size) {
                 return Err(self.out_of_plane(file, &index, &position, height));
             }
             let corners = element.kind.corners();
@@ -192,8 +200,8 @@ impl Content {
     fn height(&self, index: &HashMap<u64, usize>, position: &[[f64; 3]]) -> f64 {
         let mut used = self.elements.iter().flat_map(|e| &e.nodes).filter_map(|tag| Some(position[*index.get(tag)?]));
         let Some([_, _, first]) = used.next() else { return 0.0 };
-        let size = position.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        if used.all(|p| (p[2] - first).abs() <= ROUND_OFF * size) { first } else { 0.0 }
+        let size = largest(position);
+        if used.all(|p| (p[2] - first).abs() <= FLAT * size) { first } else { 0.0 }
     }
 
     /// How many cells of each kind there are.
@@ -208,11 +216,12 @@ impl Content {
     /// Says which elements have nodes outside the plane, how many they are, and how far it goes.
     fn out_of_plane(&self, file: &Path, index: &HashMap<u64, usize>, position: &[[f64; 3]], height: f64) -> MeshError {
         let (mut count, mut first, mut low, mut high) = (0_usize, None, height, height);
+        let size = largest(position);
         for element in &self.elements {
             let nodes: Vec<usize> = element.nodes.iter().filter_map(|tag| index.get(tag).copied()).collect();
             let heights = nodes.iter().map(|&n| position[n][2]);
             (low, high) = heights.fold((low, high), |(low, high), z| (low.min(z), high.max(z)));
-            if is_plane(&nodes, position, height) {
+            if is_plane(&nodes, position, height, size) {
                 continue;
             }
             count += 1;
@@ -238,6 +247,7 @@ impl Content {
             numbers: self.numbers.as_ref().unwrap_or(&self.names).clone(),
             kinds: self.kinds(),
             entities: Vec::new(),
+            made_for: Vec::new(),
             nodes: self.node_sets.iter().map(|(name, tags)| (name.clone(), known(tags))).collect(),
             surfaces: self
                 .surfaces
@@ -307,7 +317,8 @@ impl Counts {
                 ));
             }
             let beside = (along[0] * from[1] - along[1] * from[0]).abs() / length;
-            if beside > ROUND_OFF * length {
+            let digits = SEVEN_DIGITS * [a, b].as_flattened().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            if beside > (ROUND_OFF * length).max(digits.min(BARELY * length)) {
                 self.curved.insert([ends[0].min(ends[1]), ends[0].max(ends[1])]);
                 if beside > self.off[0] {
                     self.off = [beside, length];
@@ -348,7 +359,11 @@ impl Counts {
     }
 }
 
-fn is_plane(nodes: &[usize], position: &[[f64; 3]], height: f64) -> bool {
-    let size = nodes.iter().flat_map(|&n| position[n]).map(f64::abs).fold(0.0, f64::max);
-    nodes.iter().all(|&n| (position[n][2] - height).abs() <= ROUND_OFF * size)
+fn is_plane(nodes: &[usize], position: &[[f64; 3]], height: f64, size: f64) -> bool {
+    nodes.iter().all(|&n| (position[n][2] - height).abs() <= FLAT * size)
+}
+
+/// The largest coordinate.
+fn largest(position: &[[f64; 3]]) -> f64 {
+    position.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()))
 }

@@ -32,7 +32,10 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
             text if others(&text) => foreign::read(file, limit),
             text => gmsh::parse(&text, file),
         },
-        Some(extension) if extension == "inp" => abaqus::parse(&bytes()?, file),
+        Some(extension) if extension == "inp" => match bytes()? {
+            text if is_avs(&text) => foreign::read(file, limit),
+            text => abaqus::parse(&text, file),
+        },
         _ => foreign::read(file, limit),
     }
 }
@@ -47,4 +50,12 @@ fn others(text: &[u8]) -> bool {
         || first.starts_with('(')
         || first.to_ascii_lowercase().starts_with("mesh ")
         || head.contains("BEGIN POINTS LIST")
+}
+
+/// True if an `.inp` file is AVS's: behind comments, it begins with five counts.
+fn is_avs(text: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&text[..text.len().min(4000)]);
+    let first = head.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
+    let words: Vec<&str> = first.split_whitespace().collect();
+    words.len() == 5 && words.iter().all(|word| word.parse::<usize>().is_ok())
 }

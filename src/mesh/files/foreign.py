@@ -11,9 +11,12 @@ GMSH_SHAPES = {1: ("line", 2), 8: ("line", 3), 2: ("triangle", 3), 9: ("triangle
                3: ("quadrilateral", 4), 16: ("quadrilateral", 8), 10: ("quadrilateral", 9)}
 # The integers that group cells, by the name each format gives them.
 GROUPING = ["gmsh:physical", "cell_tags", "medit:ref", "CellEntityIds", "name_to_read", "su2:tag", "cell_ids", "GroupIds"]
-# Words in what other programs call such integers, and numbers that are something else.
-TELLING = ["physical", "material", "entity", "entities", "geometryid", "region", "domain", "subdomain", "boundar", "marker", "label", "group", "tag", "block", "part", "zone"]
-NO_GROUPS = {"gmsh:geometrical", "vtkOriginalCellIds", "vtkGhostType", "partition", "rank", "GlobalElementId", "GlobalCellIds", "ids", "vtkIdFilter_Ids"}
+# Words in what other programs call such integers, the most telling first, such words that are others' beginnings, and numbers that are
+# something else.
+TELLING = ["physical", "material", "region", "subdomain", "domain", "entity", "entities", "geometry", "boundar", "marker", "label", "group", "tag", "block", "zone"]
+TELLING_ALONE = {"mat", "mats", "matid", "part", "parts", "partid"}
+NO_GROUPS = {"gmsh:geometrical", "vtkoriginalcellids", "vtkghosttype", "ghosttype", "partition", "partitions", "partitionid", "partitionids", "partition_id", "mpi_rank", "mpirank",
+             "rank", "processid", "process_id", "procid", "globalelementid", "globalcellids", "ids", "vtkidfilter_ids"}
 # Suffixes that meshio does not know and Gmsh reads.
 ONLY_GMSH = {".geo", ".diff", ".p3d", ".neu"}
 
@@ -30,19 +33,28 @@ def whole_numbers(blocks):
     return found
 
 
+def telling(name):
+    """How telling the name of an array is of groups, the smaller the more; nothing where it is not."""
+    words = [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name)]
+    ranks = [rank for rank, known in enumerate(TELLING) if any(word.startswith(known) or word.rstrip("s").endswith(known) for word in words)]
+    return min(ranks, default=len(TELLING) if TELLING_ALONE.intersection(words) else None)
+
+
 def from_meshio(source, target):
     """Points, blocks, node sets and numbers of groups, as meshio has them."""
     mesh = read_with_meshio(source, target)
-    blocks = {name: whole_numbers(blocks) for name, blocks in mesh.cell_data.items() if name not in NO_GROUPS}
+    blocks = {name: whole_numbers(blocks) for name, blocks in mesh.cell_data.items() if name.lower() not in NO_GROUPS}
     whole = [name for name, found in blocks.items() if found is not None]
     # Of several numbers, those that the format has for groups, then those that are called so, then the only ones that differ.
-    told = [name for name in whole if any(word in name.lower() for word in TELLING)]
+    told = sorted((name for name in whole if telling(name) is not None), key=telling)
     found = {name: [x for block in blocks[name] for x in block] for name in whole}
     # Numbers that are all different are those of the cells.
     others = [name for name in whole if name in told or len(found[name]) < 3 or len(set(found[name])) < len(found[name])]
     differ = [name for name in others if len(set(found[name])) > 1]
     chosen = next((names[0] for names in ([n for n in GROUPING if n in whole], told, differ if len(differ) == 1 else [], others if len(others) == 1 else []) if names), None)
     numbers_of = blocks.get(chosen)
+    passed_over = [name for name in others if name != chosen and chosen is not None and chosen not in GROUPING]
+    notes = [f"Groups of cells are the numbers of the array '{chosen}'. There are others ({', '.join(passed_over)}): leave those that are meant as the only ones."] if passed_over else []
     # In the formats that have numbers for groups, zero is none.
     none = {0} if chosen in GROUPING or not any(found.get(chosen, [])) else set()
     names = {(int(dim), int(tag)): name for name, (tag, dim) in mesh.field_data.items()}
@@ -86,7 +98,7 @@ def from_meshio(source, target):
             for name in families_of:
                 sets.setdefault(name, []).extend(int(i) for i in (data == tag).nonzero()[0])
     points = [[float(x) for x in point] for point in mesh.points]
-    return {"points": points, "blocks": blocks, "node_sets": sets, "numbers": [[*key, name] for key, name in names.items()]}
+    return {"points": points, "blocks": blocks, "node_sets": sets, "numbers": [[*key, name] for key, name in names.items()], "notes": notes}
 
 
 def from_gmsh(source):

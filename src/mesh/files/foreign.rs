@@ -11,12 +11,13 @@ use super::content::{Content, Element, Kind};
 use super::meshio;
 use crate::mesh::cells::solids::solid_kind;
 use crate::mesh::{MeshError, RawMesh};
-use crate::scene::Note;
+use crate::scene::{Kinematics, Note};
 
 const SCRIPT: &str = concat!(
     include_str!("readers/lean.py"),
     include_str!("readers/found.py"),
     include_str!("readers/xdmf.py"),
+    include_str!("readers/vtk.py"),
     include_str!("readers/unv.py"),
     include_str!("readers/text.py"),
     include_str!("readers/exodus.py"),
@@ -40,6 +41,9 @@ struct Converted {
     /// What the file lacks and can do without.
     #[serde(default)]
     notes: Vec<String>,
+    /// Kinematics by its name, and the name of an element that is made for it.
+    #[serde(default)]
+    made_for: Vec<(String, String)>,
 }
 
 #[derive(Deserialize)]
@@ -118,7 +122,9 @@ pub fn parse(text: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError
             content.elements.push(Element { kind, tag, nodes, physical: physical_of(groups), entity: None });
         }
     }
-    let (raw, mut notes) = content.into_raw(file)?;
+    let (mut raw, mut notes) = content.into_raw(file)?;
+    let made_for = found.made_for.into_iter();
+    raw.sets.made_for = made_for.filter_map(|(name, element)| Some((Kinematics::named(&name)?, element))).collect();
     notes.extend(found.notes.into_iter().map(|text| Note { weakens_guarantee: false, text }));
     Ok((raw, notes))
 }

@@ -149,6 +149,7 @@ fn append(whole: &mut RawMesh, part: RawMesh) {
         *whole.sets.kinds.entry(kind).or_default() += count;
     }
     whole.sets.numbers.extend(sets.numbers);
+    whole.sets.made_for.extend(sets.made_for);
     whole.sets.entities.extend(sets.entities.into_iter().map(|mut entity| {
         entity.cells.triangles.iter_mut().for_each(|t| *t = cell(*t));
         entity.cells.segments.iter_mut().for_each(|s| *s = edge(*s));

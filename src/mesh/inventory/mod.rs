@@ -15,8 +15,9 @@ pub use starting::starting_scene;
 use super::files::file;
 use super::select::{named_cells, sorted};
 use super::topology::labels::{Pair, pair};
+use super::topology::touching::notes;
 use super::{MeshError, RawMesh, Triangulation, chosen};
-use crate::scene::{Note, Scene, toml_key, toml_string};
+use crate::scene::{Kinematics, Note, Scene, toml_key, toml_string};
 
 /// Edges that a file names or numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +47,8 @@ pub struct Inventory {
     pub body: Vec<usize>,
     /// Kinds of cells as the file has them, with their numbers.
     pub kinds: BTreeMap<String, usize>,
+    /// The kinematics that all its elements are made for, where their names say so, and such a name.
+    pub made_for: Option<(Kinematics, String)>,
     /// Groups of cells that together make the whole mesh, each cell in one.
     pub bodies: Vec<Region>,
     /// All other groups and entities of cells.
@@ -108,6 +111,10 @@ impl Inventory {
         let mut inventory = Inventory {
             file: file.to_path_buf(),
             kinds: raw.sets.kinds.clone(),
+            made_for: match &*raw.sets.made_for {
+                [one] => Some(one.clone()),
+                _ => None,
+            },
             boundaries: named,
             node_sets: curves.node_sets(),
             surfaces: curves.surfaces(),
@@ -120,19 +127,22 @@ impl Inventory {
             outline,
             notes,
         };
-        inventory.notes.extend(inventory.refused(raw.clone()));
+        inventory.notes.extend(inventory.told_of_scenes(raw.clone()));
         Ok(inventory)
     }
 
-    /// A note where no scene can be made of the mesh as it is.
-    fn refused(&self, raw: RawMesh) -> Option<Note> {
-        let name = self.file.file_name()?.to_string_lossy();
-        let scene = Scene::parse(&starting_scene(self, &name, &name), &self.file).ok()?;
-        let made = chosen(scene, raw, &mut Vec::new()).and_then(|(scene, raw)| Triangulation::new(raw, &scene));
-        made.err().map(|error| Note {
-            weakens_guarantee: false,
-            text: format!("a scene of this mesh is refused as it is: {error}"),
-        })
+    /// Notes on sides that lie on each other without being joined, or one that says why no scene can be made of this mesh.
+    fn told_of_scenes(&self, raw: RawMesh) -> Vec<Note> {
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        let Ok(scene) = Scene::parse(&starting_scene(self, &name, &name), &self.file) else { return Vec::new() };
+        let chosen = chosen(scene, raw, &mut Vec::new());
+        match chosen.and_then(|(scene, raw)| Ok((Triangulation::new(raw, &scene)?.0, scene))) {
+            Ok((mesh, scene)) => notes(&mesh, &scene),
+            Err(error) => {
+                let text = format!("a scene of this mesh is refused as it is: {error}");
+                vec![Note { weakens_guarantee: false, text }]
+            }
+        }
     }
 
     /// The names that the file has for edges of a piece of the outline, and whether one of them has all of it.

@@ -46,7 +46,8 @@ pub(super) fn divide(raw: &RawMesh, triangles: &[[usize; 3]]) -> (Vec<Region>, V
     named.values_mut().chain(numbered.values_mut()).for_each(distinct);
     let all = triangles.len();
     let shape = |members: &Members| measured(raw, triangles, members);
-    let by_name: Vec<(Region, Members)> = named.into_iter().map(|(n, m)| (called(&n, shape(&m)), m)).collect();
+    let by_name: Vec<(Region, Members)> =
+        named.into_iter().map(|(n, m)| (called(&n, &raw.sets.numbers, shape(&m)), m)).collect();
     let by_number: Vec<(Region, Members)> = numbered.into_iter().map(|(t, m)| (entity(t, shape(&m)), m)).collect();
     let named = by_name.len();
     let list: Vec<(Region, Members)> = by_name.into_iter().chain(by_number).collect();
@@ -93,11 +94,15 @@ fn partition(groups: &[(Region, Members)], among: std::ops::Range<usize>, all: u
     order.into_iter().find(|&i| groups[i].1.len() == all).map(|i| vec![i])
 }
 
-/// A group by name, or by number where its name is one.
-fn called(name: &str, shape: Region) -> Region {
+/// A group by name, or by number where its name is one, and no other group has that number.
+fn called(name: &str, numbers: &HashMap<(i32, i32), String>, shape: Region) -> Region {
+    let name = name.to_string();
     match name.parse::<i32>() {
-        Ok(tag) => Region { name: name.to_string(), ..entity(tag, shape) },
-        Err(_) => Region { name: name.to_string(), body: name.to_string(), ..shape },
+        Ok(tag) if numbers.get(&(2, tag)).is_some_and(|other| *other != name) => {
+            Region { body: format!("body_{tag}"), keys: Some(format!("set = {}", toml_string(&name))), name, ..shape }
+        }
+        Ok(tag) => Region { name, ..entity(tag, shape) },
+        Err(_) => Region { body: name.clone(), name, ..shape },
     }
 }
 

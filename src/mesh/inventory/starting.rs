@@ -24,7 +24,17 @@ fn write(text: &mut String, inventory: &Inventory, mesh: &str, title: &str) -> s
         "# A scene to start from: put in the materials, then take the # away from supports and loads and choose their boundaries."
     )?;
     writeln!(text, "title = {}\n", toml_string(title))?;
-    writeln!(text, "[model]\nkinematics = \"plane-strain\" # or \"plane-stress\"\n")?;
+    match &inventory.made_for {
+        Some((kinematics, name)) => {
+            writeln!(text, "[model]\nkinematics = \"{}\" # elements {name}\n", kinematics.name())?;
+        }
+        None => {
+            writeln!(
+                text,
+                "[model]\nkinematics = \"plane-strain\" # or \"plane-stress\", or \"axisymmetric\" about x = 0\n"
+            )?;
+        }
+    }
     writeln!(text, "[mesh]\nfile = {}", toml_string(mesh))?;
     for region in &inventory.bodies {
         let lines = inventory.body_lines(region).join("\n");

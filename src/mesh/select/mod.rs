@@ -10,7 +10,7 @@ use outline::Outline;
 use super::RawMesh;
 use super::error::MeshError;
 use super::topology::labels::{Pair, pair, used_names};
-use crate::scene::{Boundary, Edges, Group, Note, Scene};
+use crate::scene::{Boundary, Edges, Group, Kinematics, Note, Scene};
 
 /// Cells by their vertices.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -53,9 +53,22 @@ pub struct Sets {
     pub nodes: Vec<(String, Vec<usize>)>,
     /// Sides of cells by surface.
     pub surfaces: Vec<(String, Vec<[usize; 2]>)>,
+    /// Kinematics that elements of the file are made for, each with the name of one.
+    pub made_for: Vec<(Kinematics, String)>,
 }
 
 impl Sets {
+    /// Notes where elements of the file are made for other kinematics than those of `scene`.
+    pub(in crate::mesh) fn contradictions(&self, scene: &Scene) -> Vec<Note> {
+        let others = self.made_for.iter().filter(|(kinematics, _)| *kinematics != scene.kinematics);
+        let note = |(kinematics, name): &(Kinematics, String)| {
+            let [of, own] = [*kinematics, scene.kinematics].map(Kinematics::name);
+            let text = format!("elements {name} of the mesh file are made for {of}, and the scene is solved in {own}");
+            Note { weakens_guarantee: false, text }
+        };
+        others.map(note).collect()
+    }
+
     fn entity(&self, dimension: i32, tag: i32) -> impl Iterator<Item = &Cells> {
         self.entities.iter().filter(move |e| (e.dimension, e.tag) == (dimension, tag)).map(|e| &e.cells)
     }

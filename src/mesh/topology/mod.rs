@@ -31,7 +31,7 @@ impl Triangulation {
     /// # Errors
     /// [`MeshError`] names the cell, vertex or boundary that does not fit, its place, and the remedy.
     pub fn new(raw: RawMesh, scene: &Scene) -> Result<(Triangulation, Vec<Note>), MeshError> {
-        let mut notes = Vec::new();
+        let mut notes = raw.sets.contradictions(scene);
         let raw = raw.resolved(scene);
         let cells = cells::check(&raw, scene, &mut notes)?;
         let halves = HalfEdges::new(&cells.triangles, raw.points.len());

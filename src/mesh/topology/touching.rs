@@ -9,8 +9,8 @@ use crate::mesh::error::at;
 use crate::scene::{Note, Scene, counted};
 use crate::vector::dot;
 
-/// Distance from a line, in parts of the length of an edge on it, at which two edges touch.
-const CLOSE: f64 = 1e-9;
+/// Distance from a line, in parts of the length of an edge on it, at which two edges touch: files have seven digits.
+const CLOSE: f64 = 1e-6;
 /// Cosine between opposite normals beyond which they do.
 const FACING: f64 = 1.0 - 1e-9;
 
@@ -68,7 +68,8 @@ pub(in crate::mesh) fn notes(mesh: &Triangulation, scene: &Scene) -> Vec<Note> {
 }
 
 impl Touching {
-    fn told(&self, mesh: &Triangulation, scene: &Scene) -> String {
+    /// In words, for whom nothing was said about it may be news.
+    pub fn told(&self, mesh: &Triangulation, scene: &Scene) -> String {
         let [first, second] = self.bodies.map(|body| &scene.bodies[body].name);
         let own =
             self.edges.iter().filter(|e| mesh.edges[**e].triangles[0].is_some_and(|t| mesh.body[t] == self.bodies[0]));

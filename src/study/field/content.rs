@@ -14,6 +14,7 @@ const SCRIPT: &str = concat!(
     include_str!("../../mesh/files/readers/lean.py"),
     include_str!("../../mesh/files/readers/found.py"),
     include_str!("../../mesh/files/readers/xdmf.py"),
+    include_str!("../../mesh/files/readers/vtk.py"),
     include_str!("../../mesh/files/readers/unv.py"),
     include_str!("../../mesh/files/readers/text.py"),
     include_str!("../../mesh/files/readers/exodus.py"),

@@ -1,6 +1,7 @@
 //! Shapes of cells by the names of Abaqus and CalculiX elements.
 
 use super::Kind;
+use crate::scene::Kinematics;
 
 /// Treatment of the elements of a type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +14,8 @@ pub(super) enum Family {
     Rigid(Kind, usize),
     /// No part of the mesh: springs, masses, connectors.
     Idle,
+    /// A user's element or a surface, whose shape nobody knows.
+    Shapeless,
     /// A cell in space.
     Space,
     /// A name that is not known.
@@ -26,11 +29,13 @@ const SPACE: [&str; 8] = ["C3D", "DC3D", "AC3D", "CIN3D", "EC3D", "SC6", "SC8", 
 const LINE: [&str; 14] =
     ["B2", "B3", "PIPE2", "PIPE3", "T2D", "T3D", "R2D", "RAX", "SAX", "MAX", "SFMAX", "RB2D", "RB3D", "F2D"];
 /// Springs, masses, connectors and joints, layers of glue and gaskets, infinite cells, networks of fluid.
-const IDLE: [&str; 34] = [
-    "SPRING", "DASHPOT", "MASS", "ROTARYI", "GAP", "CONN", "SFM3D", "DCOUP", "UNI", "DISTC", "ITS", "ELBOW", "U",
-    "COH", "JOINT", "CINPE", "CINPS", "CINAX", "ACIN", "GK2D", "GKPE", "GKPS", "GKAX", "GK3D", "DRAG", "PSI",
-    "HEATCAP", "FRAME", "DC1D", "INTER", "DINTER", "ISL", "IRS", "SFMGAX",
+const IDLE: [&str; 32] = [
+    "SPRING", "DASHPOT", "MASS", "ROTARYI", "GAP", "CONN", "DCOUP", "UNI", "DISTC", "ITS", "ELBOW", "COH", "JOINT",
+    "CINPE", "CINPS", "CINAX", "ACIN", "GK2D", "GKPE", "GKPS", "GKAX", "GK3D", "DRAG", "PSI", "HEATCAP", "FRAME",
+    "DC1D", "INTER", "DINTER", "ISL", "IRS", "SFMGAX",
 ];
+/// Elements of users, and surfaces.
+const SHAPELESS: [&str; 2] = ["SFM3D", "U"];
 /// The networks of fluid of CalculiX, and line springs: names that others begin with.
 const IDLE_ALONE: [&str; 3] = ["D", "LS3S", "LS6"];
 
@@ -42,6 +47,9 @@ pub(super) fn family(name: &str) -> Family {
     }
     if IDLE.iter().any(|prefix| name.starts_with(prefix)) || IDLE_ALONE.contains(&name.as_str()) {
         return Family::Idle;
+    }
+    if SHAPELESS.iter().any(|prefix| name.starts_with(prefix)) {
+        return Family::Shapeless;
     }
     match name.strip_prefix("R3D") {
         Some("3") => return Family::Rigid(Kind::Triangle, 3),
@@ -67,6 +75,19 @@ pub(super) fn family(name: &str) -> Family {
         (None, Some((kind, nodes))) => Family::Shell(kind, nodes),
         (None, None) => Family::Unknown,
     }
+}
+
+/// The kinematics that elements called `name` are made for, where it says so.
+pub(super) fn made_for(name: &str) -> Option<Kinematics> {
+    let name = name.trim().to_ascii_uppercase();
+    let of = [
+        ("CPE", Kinematics::PlaneStrain),
+        ("CPS", Kinematics::PlaneStress),
+        ("CAX", Kinematics::Axisymmetric),
+        ("CGAX", Kinematics::Axisymmetric),
+    ];
+    let found = of.into_iter().find(|(prefix, _)| shape(&name, &[prefix]).is_some());
+    found.map(|(_, kinematics)| kinematics)
 }
 
 /// Shape and number of nodes behind one of the `prefixes`: the first figure, as in CPS4R, S8R5, and STRI65, a triangle with six.
@@ -127,6 +148,9 @@ mod tests {
             ["SPRING1", "MASS", "CONN2D2", "GAPUNI", "D", "COH2D4", "COHAX4", "JOINT2D", "CINPE4", "CINAX5R", "GKPS4"]
         {
             assert_eq!(family(name), Family::Idle, "{name}");
+        }
+        for name in ["U1", "u12", "SFM3D4R"] {
+            assert_eq!(family(name), Family::Shapeless, "{name}");
         }
         for name in ["", "CPE", "CPX4", "CPE7", "DX4", "SX8"] {
             assert_eq!(family(name), Family::Unknown, "{name}");

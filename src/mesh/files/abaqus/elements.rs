@@ -2,6 +2,7 @@
 
 use super::DAMAGED;
 use super::keyword::{Keyword, Place};
+use super::scope::Shapeless;
 use crate::mesh::MeshError;
 use crate::mesh::files::content::Kind;
 
@@ -44,6 +45,26 @@ pub(super) fn idle(keyword: &Keyword) -> Vec<u64> {
     let before = [false].into_iter().chain(keyword.lines.iter().map(|line| line.continues));
     let starts = keyword.lines.iter().zip(before).filter(|(_, continued)| !continued);
     starts.filter_map(|(line, _)| line.fields.first()?.parse().ok()).collect()
+}
+
+/// Nodes and place of each element of a type without a shape, where they are enough for one.
+pub(super) fn shapeless(keyword: &Keyword, name: &str) -> Vec<Shapeless> {
+    let mut all: Vec<Shapeless> = Vec::new();
+    let mut continued = false;
+    for line in &keyword.lines {
+        let numbers = line.fields.iter().filter_map(|field| field.parse::<u64>().ok());
+        match all.last_mut().filter(|_| continued) {
+            Some(last) => last.nodes.extend(numbers),
+            None => all.push(Shapeless {
+                name: name.to_owned(),
+                nodes: numbers.skip(1).collect(),
+                place: line.place.clone(),
+            }),
+        }
+        continued = line.continues;
+    }
+    all.retain(|own| own.nodes.len() >= 3);
+    all
 }
 
 /// The error for elements in space, with how many there are where their name says how many nodes each has.

@@ -50,10 +50,11 @@ pub(in crate::mesh) fn parse(text: &[u8], file: &Path) -> Result<(RawMesh, Vec<N
         reader.take(&keyword)?;
     }
     reader.closed()?;
-    let Reader { instances, assembly, name, mut remarks, .. } = reader;
+    let Reader { instances, assembly, name, mut remarks, made_for, .. } = reader;
     let scopes = assembly::assembled(instances, assembly, &name, &mut remarks)?;
     let content = content::content(scopes, file, &mut remarks)?;
-    let (raw, mut notes) = content.into_raw(file)?;
+    let (mut raw, mut notes) = content.into_raw(file)?;
+    raw.sets.made_for = made_for;
     notes.extend(remarks.notes());
     Ok((raw, notes))
 }

@@ -4,13 +4,14 @@ use std::collections::HashMap;
 
 use super::DAMAGED;
 use super::assembly::{Instance, Position};
-use super::element::{Family, family};
-use super::elements::{idle, in_space, rows};
+use super::element::{Family, family, made_for};
+use super::elements::{idle, in_space, rows, shapeless};
 use super::keyword::{Keyword, Line, Place};
 use super::remarks::Remarks;
 use super::scope::{Cell, Entry, Member, Of, Operation, Patch, Scope, member, members};
 use super::side::{LABELS, Label};
 use crate::mesh::MeshError;
+use crate::scene::Kinematics;
 
 #[derive(Default)]
 pub(super) struct Reader {
@@ -20,6 +21,8 @@ pub(super) struct Reader {
     pub name: String,
     pub instances: Vec<Instance>,
     pub remarks: Remarks,
+    /// Kinematics that elements are made for, each with the name of one.
+    pub made_for: Vec<(Kinematics, String)>,
     /// True if all cells of the deck are rigid.
     all_rigid: bool,
     /// By their names in upper case.
@@ -157,7 +160,15 @@ impl Reader {
                 self.remarks.rigid_cells(name);
                 None
             }
-            Family::Idle => None,
+            Family::Idle => {
+                self.remarks.left_out(name);
+                None
+            }
+            Family::Shapeless => {
+                self.remarks.left_out(name);
+                self.scope().mesh.shapeless.extend(shapeless(keyword, name));
+                None
+            }
             Family::Space => return Err(in_space(keyword, name)),
             Family::Unknown => {
                 let what = format!("elements {name} are not known");
@@ -165,6 +176,11 @@ impl Reader {
                 return Err(keyword.fault(what, remedy));
             }
         };
+        if let Some(kinematics) = made_for(name)
+            && self.made_for.iter().all(|(other, _)| *other != kinematics)
+        {
+            self.made_for.push((kinematics, name.to_ascii_uppercase()));
+        }
         let mesh = &mut self.scope().mesh;
         let tags = match shape {
             Some((kind, count, shell)) => {

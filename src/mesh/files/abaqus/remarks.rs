@@ -16,6 +16,8 @@ pub(super) struct Remarks {
     rigid: Vec<String>,
     /// Types of rigid elements beside elastic ones.
     rigid_cells: Vec<String>,
+    /// Types of elements without an area.
+    left_out: Vec<String>,
     /// Names that more than one part has.
     common: Vec<String>,
     /// Names of a node set and of another surface of nodes.
@@ -41,6 +43,10 @@ impl Remarks {
         self.rigid_cells.push(kind.to_owned());
     }
 
+    pub fn left_out(&mut self, kind: &str) {
+        self.left_out.push(kind.to_owned());
+    }
+
     pub fn common(&mut self, name: &str) {
         self.common.push(name.to_owned());
     }
@@ -50,7 +56,7 @@ impl Remarks {
     }
 
     pub fn notes(self) -> Vec<Note> {
-        let Remarks { strays, flat, rigid, rigid_cells, common, doubled } = self;
+        let Remarks { strays, flat, rigid, rigid_cells, left_out, common, doubled } = self;
         let strays = strays.into_iter().map(|(set, number)| format!("{set} ({number})")).collect();
         let kinds = [
             ("Numbers that are not in the deck are left out of these sets, the first in brackets: ", strays),
@@ -60,6 +66,7 @@ impl Remarks {
                 "Rigid elements of these types are left out, say obstacles and supports in the scene instead: ",
                 rigid_cells,
             ),
+            ("Elements of these types have no area here and are left out: ", left_out),
             ("Sets of several parts have these names, which stand for all of them together: ", common),
             ("A node set and a surface of other nodes have these names, which stand for the node set: ", doubled),
         ];

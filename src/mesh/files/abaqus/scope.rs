@@ -21,6 +21,15 @@ pub(super) struct Cell {
     pub place: Place,
 }
 
+/// An element without a shape of its own, but with nodes enough for one: a user's, or a surface.
+#[derive(Clone)]
+pub(super) struct Shapeless {
+    /// Its type.
+    pub name: String,
+    pub nodes: Vec<u64>,
+    pub place: Place,
+}
+
 #[derive(Default, Clone)]
 pub(super) struct Mesh {
     pub nodes: HashMap<u64, [f64; 3]>,
@@ -28,6 +37,7 @@ pub(super) struct Mesh {
     pub cells: Vec<Cell>,
     /// Numbers of all elements: those that are no cells, such as springs, are in sets too.
     pub elements: HashSet<u64>,
+    pub shapeless: Vec<Shapeless>,
     /// By how much the numbers are above those of the deck.
     pub moved: u64,
 }
@@ -84,10 +94,12 @@ impl Mesh {
     pub fn above(self, by: u64) -> Mesh {
         let up = |tag: u64| tag.saturating_add(by);
         let cell = |cell: Cell| Cell { tag: up(cell.tag), nodes: cell.nodes.into_iter().map(up).collect(), ..cell };
+        let shapeless = |own: Shapeless| Shapeless { nodes: own.nodes.into_iter().map(up).collect(), ..own };
         Mesh {
             nodes: self.nodes.into_iter().map(|(tag, point)| (up(tag), point)).collect(),
             cells: self.cells.into_iter().map(cell).collect(),
             elements: self.elements.into_iter().map(up).collect(),
+            shapeless: self.shapeless.into_iter().map(shapeless).collect(),
             moved: up(self.moved),
         }
     }
@@ -104,8 +116,17 @@ impl Mesh {
         }
     }
 
-    /// Refuses an element with a node that is not there.
+    /// Refuses an element with a node that is not there, and one without a shape where no cell stands on its nodes: a body would lack it.
     pub fn check(&self) -> Result<(), MeshError> {
+        let cells = self.cells.iter().filter(|cell| cell.kind != Kind::Line);
+        let covered: HashSet<u64> = cells.flat_map(|cell| &cell.nodes).copied().collect();
+        if let Some(first) = self.shapeless.iter().find(|own| own.nodes.iter().any(|node| !covered.contains(node))) {
+            let what = format!(
+                "elements {} have no shape that is known, and no plane element stands on their nodes",
+                first.name
+            );
+            return Err(first.place.fault(what, "write them as CPS4, CPE4 or the like, in the order of their corners"));
+        }
         for cell in &self.cells {
             if let Some(node) = cell.nodes.iter().find(|node| !self.nodes.contains_key(node)) {
                 let [tag, node] = [cell.tag, *node].map(|number| number.saturating_sub(self.moved));

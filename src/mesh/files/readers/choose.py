@@ -1,6 +1,6 @@
 """Which reader a file asks for."""
 
-READERS = {".unv": read_unv, ".med": read_med, ".rmed": read_med, ".mmed": read_med, ".e": read_exodus, ".exo": read_exodus, ".ex2": read_exodus, ".exii": read_exodus,
+READERS = {".unv": read_unv, ".med": read_med, ".rmed": read_med, ".mmed": read_med, **dict.fromkeys((".e", ".exo", ".ex2", ".exii", ".exoii", ".exodus", ".g", ".gen"), read_exodus),
            ".frd": read_frd, ".vol": read_ngsolve, ".vol.gz": read_ngsolve, ".json": read_skfem, ".su2": read_su2}
 
 
@@ -14,11 +14,18 @@ def own_reader(source):
             return reader
     with open(source, "rb") as file:
         head = file.read(4000)
+    # Sandia's netCDF, whatever it is called.
+    if head[:4] in (b"CDF\1", b"CDF\2", b"CDF\5") or head.startswith(b"\x89HDF") and low.endswith(".nc"):
+        return read_exodus
     if head.startswith(MARKS[1:]) and b"<" not in head[:4]:
         refuse("its text is encoded in UTF-16: save it in UTF-8 or ASCII")
     head = (head[3:] if head.startswith(MARKS[0]) else head).decode("latin-1")
     if re.search(r"^\s*BEGIN POINTS LIST", head, re.MULTILINE):
         return read_getfem
+    if re.search(r"^(BEGIN +BULK|GRID[ *,]|C(TRIA|QUAD)[0-9A-Z]*[ *,])", head, re.MULTILINE | re.IGNORECASE):
+        return read_nastran
+    if low.endswith((".node", ".ele")):
+        refuse("the files of Triangle (.node, .ele) are not read: export the mesh as Gmsh (.msh), Medit (.mesh) or VTU")
     lines = [line.strip() for line in head.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     first = lines[0] if lines else ""
     if first.lower().startswith("meshversionformatted"):
@@ -29,6 +36,8 @@ def own_reader(source):
         return read_gid
     if first == "mesh3d":
         return read_ngsolve
+    if re.match(r"MFEM mesh v1\.\d", first):
+        return read_mfem
     return None
 
 

@@ -94,6 +94,7 @@ class Found:
         self.fields = {}  # Rows by point, by name.
         self.single = False  # True if these are in single precision.
         self.notes = []
+        self.made_for = {}  # Name of an element, by the kinematics that it is made for.
 
     def point(self, tag, coordinates):
         point = [float(x) for x in coordinates]
@@ -164,7 +165,7 @@ class Found:
             raise Unreadable("there is no cell in it")
         sets = {name: [self.index[tag] for tag in tags if tag in self.index] for name, tags in self.node_sets.items()}
         numbers = [[*key, name] for key, name in self.numbers.items() if abs(key[1]) < 2**31]
-        return {"points": self.points, "blocks": self.blocks(), "node_sets": sets, "numbers": numbers, "notes": self.notes}
+        return {"points": self.points, "blocks": self.blocks(), "node_sets": sets, "numbers": numbers, "notes": self.notes, "made_for": list(self.made_for.items())}
 
 
 def content_of(source):

@@ -50,15 +50,19 @@ def read_with_meshio(source, target):
     for module, table, value in (("_mesh", "topological_dimension", 2), ("_common", "num_nodes_per_cell", 4)):
         getattr(getattr(meshio, module, None), table, {}).setdefault("pixel", value)
     said = io.StringIO()
+    source = named(source, target)
     try:
         if source.lower().endswith((".xdmf", ".xmf")):
             grids = xdmf_grids(source)
             if grids is not None:
                 return grids
             prepare_meshio_for_xdmf(source)
+            # Files that it names lie beside it.
+            os.chdir(os.path.dirname(source))
         count_rows(source)
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            mesh = meshio.read(readable(source, target))
+            mesh = read_legacy_vtk(source) if source.lower().endswith(".vtk") else None
+            mesh = meshio.read(readable(source, target)) if mesh is None else mesh
     except (ModuleNotFoundError, Unreadable):
         raise
     except (Exception, SystemExit) as error:
@@ -76,6 +80,15 @@ def read_with_meshio(source, target):
     return mesh
 
 
+def named(source, target):
+    """The file, or a copy with the ending of its format where it has that of another: AVS's UCD is called .inp by those who write it."""
+    if not source.lower().endswith(".inp"):
+        return source
+    with open(source, "rb") as file, open(target + ".avs", "wb") as copy:
+        copy.write(file.read())
+    return target + ".avs"
+
+
 def count_rows(source):
     """Refuses a file with other rows than it announces, of formats in which meshio does not look at that."""
     suffix = os.path.splitext(source)[1].lower()
@@ -86,6 +99,10 @@ def count_rows(source):
             present = len(re.findall(rf"<{rows}\s", text))
             if announced and int(announced[1]) != present:
                 raise Unreadable(f"it announces {announced[1]} {what} and has {present}")
+    elif suffix in (".tec", ".dat"):
+        zones = sum(bool(re.match(r"ZONE\b", line.strip(), re.IGNORECASE)) for line in lines_of(source))
+        if zones > 1:
+            raise Unreadable(f"it has {zones} zones, of which one would be read: save each into a file of its own, and name the files in [[mesh.parts]]")
     elif suffix in (".off", ".avs"):
         lines = lines_of(source).without("#")
         first, *others = [line.split() for line in lines[:2]]
@@ -107,6 +124,11 @@ def readable(source, target):
     with open(source, "rb") as file:
         head = file.read(500)
         rest = file.read() if b"<VTKFile" in head else b""
+    if rest:
+        whole = one_piece(head + rest)
+        changed, head, rest = whole != head + rest, whole[:500], whole[500:]
+    else:
+        changed = False
     if re.match(rb"OFF[ \t]+\d", head):
         with open(target + ".off", "wb") as file, open(source, "rb") as text:
             file.write(b"OFF\n" + text.read()[3:].lstrip(b" \t"))
@@ -118,7 +140,7 @@ def readable(source, target):
         raise Unreadable("its arrays are compressed with LZ4 (vtkLZ4DataCompressor): save it as text (ASCII) or compressed with zlib")
     # XML has marks that its own reader knows.
     marked = head.startswith(MARKS) and b"<" not in head[:8]
-    if older == head and not marked:
+    if older == head and not marked and not changed:
         return source
     copy = target + os.path.splitext(source)[1]
     with open(copy, "wb") as file:
@@ -126,8 +148,40 @@ def readable(source, target):
     return copy
 
 
+def one_piece(data):
+    """VTK's XML with no piece but the one that has cells: meshio reads the last, whatever the others hold."""
+    end = data.find(b"<AppendedData")
+    head, tail = (data, b"") if end < 0 else (data[:end], data[end:])
+    pieces = re.findall(rb"<Piece\b[^>]*>", head)
+    empty = [piece for piece in pieces if re.search(rb'NumberOfCells\s*=\s*["\']\s*0*\s*["\']', piece)]
+    if len(pieces) - len(empty) > 1:
+        raise Unreadable(f"it has {len(pieces) - len(empty)} pieces, and does not say which of their points are the same: save it as one piece (in ParaView with Merge Blocks, "
+                         "then Save Data)")
+    for piece in empty if len(pieces) > 1 else []:
+        start = head.index(piece)
+        after = head.find(b"</Piece>", start) + len(b"</Piece>")
+        head = head[:start] + head[after if not piece.endswith(b"/>") else start + len(piece):]
+    return head + tail
+
+
+# Formats of VTK that name other files, or hold grids without a list of cells.
+VTK_NAMES_OTHERS, VTK_WITHOUT_CELLS = (".pvd", ".pvtu", ".vtm", ".vtmb"), (".vtp", ".vts", ".vtr", ".vti", ".pvts", ".pvtr", ".pvti", ".pvtp")
+
+
+def unknown(suffix):
+    """What to say of a file whose ending is that of no format that is read."""
+    if suffix in VTK_NAMES_OTHERS:
+        return f"files {suffix} only name others: give one of these"
+    if suffix in VTK_WITHOUT_CELLS:
+        return f"files {suffix} have no list of cells: save it as an unstructured grid in VTU"
+    return (f"files {suffix} are in no format that is read" if suffix else "its name has no ending that tells its format") + (
+        ": export the mesh as Abaqus or CalculiX (.inp), Gmsh (.msh), MED, UNV, Exodus, Nastran or VTU")
+
+
 def reason_of(source, error):
     """What a file holds that meshio does not read, and what to do; nothing where meshio's own message is to be shown."""
+    if "Could not deduce file format" in str(error):
+        return f"meshio cannot read it: {unknown(os.path.splitext(source)[1].lower())}"
     if isinstance(error, SystemExit) or str(error) and type(error).__module__.startswith("meshio"):
         lost = None
     else:

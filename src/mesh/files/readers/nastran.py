@@ -11,6 +11,12 @@ NASTRAN_CELLS = {name: (shape, count) for names, shape, count in [
 ] for name in names.split()}
 
 
+# Elements without an area: springs, dampers, masses, joints, boundaries of heat and panels of air.
+NASTRAN_IDLE = re.compile("C(ELAS|BUSH|DAMP|MASS|VISC|GAP|WELD|FAST|SEAM|HBDY|ONV|ONM|ONROD|ONTACT|AERO|AXIF|FLUID|FREE|INSTR)")
+# Cards of other things that begin with a C.
+NASTRAN_OTHERS = re.compile("C(ORD|SET|LOAD|REEP|SSCHD|SUPER|SUPUP|SUPEXT|YJOIN|YSUP|YAX|UPDATE|OMPUTE|HACAB|HACBR|DB|OHESIV)")
+
+
 # Cells of a body of revolution, which lie in the plane y = 0 with the axis along z, or in z = 0 with the axis along y.
 NASTRAN_TURNED = set("CTRAX3 CTRAX6 CTRIAX CTRIAX6 CQUADX4 CQUADX8 CQUADX".split())
 
@@ -108,7 +114,7 @@ def nastran_cell(found, place, name, fields):
 def read_nastran(source):
     """Bulk data of Nastran: points and elements, by their property."""
     found = Found("Nastran")
-    points, frames, usual, others, turned = [], {0: None}, "", {}, []
+    points, frames, usual, others, idle, turned = [], {0: None}, "", {}, {}, []
     words = [line.split(None, 1)[0].upper() for line in lines_of(source) if line.strip()]
     if "BEGIN" in words and "ENDDATA" not in words:
         found.notes.append("The deck has BEGIN BULK and no ENDDATA: if it was cut off, what is missing is not told.")
@@ -124,8 +130,15 @@ def read_nastran(source):
             elif name in NASTRAN_CELLS:
                 nastran_cell(found, place, name, fields)
                 turned.append(name in NASTRAN_TURNED)
-            elif re.match("C(?!ORD|ONM|SET|LOAD)", name):
-                others.setdefault(name, place)
+                kinematics = "axisymmetric" if turned[-1] else "plane-strain" if "PLSTN" in name else "plane-stress" if "PLSTS" in name else None
+                if kinematics is not None:
+                    found.made_for.setdefault(kinematics, name)
+            elif re.fullmatch(r"[=*].*", name) or any(re.fullmatch(r"=(\(\d+\))?|\*\(.*\)", word) for word in fields):
+                raise Unreadable(f"{place}: cards are repeated (=), which is not read: write each by itself")
+            elif NASTRAN_IDLE.match(name):
+                idle.setdefault(name, []).append(place)
+            elif re.match("C", name) and not NASTRAN_OTHERS.match(name) and sum(word.isdigit() for word in fields[:5]) == 5:
+                others.setdefault(name, []).append(place)
         except ValueError as error:
             raise Unreadable(f"{place}: a field of {name} is not the number that belongs there ({error})") from None
         except Unreadable as error:
@@ -134,9 +147,13 @@ def read_nastran(source):
     across = turned and all(turned) and all(y == 0.0 for _, (_, y, _) in points) and any(z != 0.0 for _, (_, _, z) in points)
     for tag, (x, y, z) in points:
         found.point(tag, [x, z, y] if across else [x, y, z])
-    if others and all(shape == "line" for shape, _, _ in found.cells):
-        told = ", ".join(f"{name} (first at {place})" for name, place in others.items())
-        raise Unreadable(f"it has no plane element, but {told}: use CTRIA3, CTRIA6, CQUAD4, CQUAD8 or the like of plane strain, plane stress or axial symmetry")
+    if others:
+        told = ", ".join(f"{name} (first at {places[0]})" for name, places in others.items())
+        none = all(shape == "line" for shape, _, _ in found.cells)
+        raise Unreadable(("it has no plane element, but " if none else "beside its plane elements it has ") + f"{told}: use CTRIA3, CTRIA6, CQUAD4, CQUAD8 or the like of plane strain, "
+                         "plane stress or axial symmetry")
+    if idle:
+        found.notes.append("Elements without an area are left out: " + ", ".join(f"{len(places)} {name}" for name, places in idle.items()) + ".")
     return found
 
 

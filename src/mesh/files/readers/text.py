@@ -239,7 +239,7 @@ def read_su2(source):
     dimension, marker, at = 2, None, 0
     while at < len(lines):
         key, equals, value = lines[at].partition("=")
-        key, value = key.strip(), value.split()
+        key, name, value = key.strip(), value.strip(), value.split()
         if not equals:
             raise Unreadable(f"'{lines[at][:60]}' stands where a section such as NELEM= is expected: the section before it announces fewer rows")
         at += 1
@@ -248,7 +248,7 @@ def read_su2(source):
         elif key == "NDIME":
             dimension = int(value[0])
         elif key == "MARKER_TAG":
-            marker = value[0]
+            marker = name
         elif key in ("NELEM", "NPOIN", "MARKER_ELEMS"):
             count = int(value[0])
             rows = lines[at:at + count]
@@ -321,4 +321,51 @@ def read_elmer(source):
                 continue
             shape = shapes.get(kind // 100, f"kind {kind} of Elmer")
             found.cell(shape, nodes[:kind % 100], [found.number(dimension, words[1], names[2 - dimension])])
+    return found
+
+
+# By MFEM's number of the geometry.
+MFEM_CELLS = {1: ("line", 2), 2: ("triangle", 3), 3: ("quadrilateral", 4), 4: ("tetrahedron", 4), 5: ("hexahedron", 8), 6: ("prism", 6), 7: ("pyramid", 5)}
+
+
+def read_mfem(source):
+    """Elements, boundary and vertices of MFEM's mesh, version 1; attributes are the groups."""
+    found = Found("MFEM")
+    lines = lines_of(source).without("#")
+    at = 1
+
+    def rows():
+        nonlocal at
+        count = int(lines[at])
+        at += 1 + count
+        return [line.split() for line in lines[at - count:at]]
+
+    cells = []
+    while at < len(lines):
+        key = lines[at]
+        at += 1
+        if key in ("elements", "boundary"):
+            cells.append((1 + (key == "elements"), rows()))
+        elif key == "vertices":
+            count = int(lines[at])
+            if at + 1 >= len(lines) or lines[at + 1] == "nodes":
+                raise Unreadable("it has no coordinates of vertices, but a function of them (nodes): save it with straight sides")
+            at += 2
+            for number, line in enumerate(lines[at:at + count]):
+                found.point(number, [real(x) for x in line.split()])
+            at += count
+        elif key == "dimension":
+            at += 1
+        elif key == "nodes":
+            raise Unreadable("its cells are curved (nodes): save it with straight sides")
+    for dimension, of_dimension in cells:
+        for attribute, kind, *nodes in of_dimension:
+            if int(kind) == 0:
+                continue
+            if int(kind) not in MFEM_CELLS:
+                raise Unreadable(f"it has cells of the geometry {kind}, which is not known")
+            shape, count = MFEM_CELLS[int(kind)]
+            if len(nodes) != count:
+                raise Unreadable(f"a {shape} has {len(nodes)} vertices instead of {count}")
+            found.cell(shape, [int(n) for n in nodes], [found.number(dimension, int(attribute), {})])
     return found
