@@ -7,7 +7,7 @@ use super::cone::many::SparseCone;
 use super::friction;
 use super::lasting::{Lasting, Question};
 use super::loads::LoadResultants;
-use super::openings::Points;
+use super::openings::{Points, Ties};
 use super::restraint::{Group, Part};
 use super::words;
 use crate::problem::Problem;
@@ -44,16 +44,17 @@ impl Verdict {
         loads: &LoadResultants,
         before: &[Lasting],
     ) -> Result<Self, StaticsError> {
-        Self::from_cones(problem, group, loads, before, |vanishing, points| cone(group, vanishing, points))
+        Self::from_cones(problem, group, loads, before, |vanishing, points| {
+            cone(group, vanishing, points, Ties::Vertices)
+        })
     }
 
-    /// A basis of the motions that contact leaves free where it holds vertices alone, as it does in a model in displacements: those of
-    /// `held`, and those that only pressure along edges resists.
-    pub fn held_at_vertices(&self, problem: &Problem, group: &Group) -> Vec<DVector<f64>> {
-        if group.runs.iter().all(|run| run.turning.is_none()) {
+    /// A basis of those motions of `held` that keep contact closed between vertices too.
+    pub fn held_along_edges(&self, problem: &Problem, group: &Group) -> Vec<DVector<f64>> {
+        if self.held.is_empty() || group.runs.iter().all(|run| run.turning.is_none()) {
             return self.held.clone();
         }
-        cone(group, &group.rollers(problem), Points::Vertices).held()
+        cone(group, &group.rollers(problem), Points::Ends, Ties::Edges).held()
     }
 
     /// As [`Self::of`], with the cones that `cone` makes of vanishing rows and of the points of runs that must not penetrate.
@@ -124,11 +125,11 @@ impl Verdict {
 }
 
 /// The cone of allowed motions of `group`.
-fn cone<'a>(group: &'a Group<'a>, vanishing: &[Part], points: Points) -> Box<dyn Cone + 'a> {
+fn cone<'a>(group: &'a Group<'a>, vanishing: &[Part], points: Points, ties: Ties) -> Box<dyn Cone + 'a> {
     if group.members.len() > MANY {
-        Box::new(SparseCone::new(group, vanishing, points))
+        Box::new(SparseCone::new(group, vanishing, points, ties))
     } else {
-        Box::new(DenseCone::new(group, vanishing, points))
+        Box::new(DenseCone::new(group, vanishing, points, ties))
     }
 }
 

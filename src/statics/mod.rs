@@ -49,13 +49,15 @@ pub struct Statics {
     pub components: Components,
     /// The loads on each piece.
     pub loads: LoadResultants,
-    /// A basis of the motions allowed both ways: no displacement on Γ_u, no normal displacement on Γ_0, no jump on Γ_K.
-    /// They are the null vectors of the stiffness with all contacts held closed. Each has largest displacement 1, and as
+    /// A basis of the motions allowed both ways: no displacement on Γ_u, no normal displacement on Γ_0, no jump on Γ_K, where its direction
+    /// turns at vertices. Each has largest displacement 1, and as
     /// many pieces and rotations as possible are at rest in each (displacement: that of the centroid plus size times rotation).
     pub held: Vec<RigidMotion>,
-    /// One vertex pin per motion of `held`, and per motion that is free where contact holds vertices alone.
+    /// A basis of those that open nothing between vertices either: the null vectors of the stiffness with all contacts held closed.
+    pub held_along_edges: Vec<RigidMotion>,
+    /// One vertex pin per motion of `held`; those of no motion along edges are for models whose contact holds vertices alone.
     pub vertex_pins: Vec<VertexPin>,
-    /// One edge pin per motion of `held`.
+    /// One edge pin per motion of `held_along_edges`.
     pub edge_pins: Vec<EdgePin>,
     /// The answer.
     pub equilibrium: Solvability,
@@ -74,6 +76,11 @@ impl Statics {
     /// The motions of `held` as displacements of every vertex.
     pub fn held_at_vertices(&self, problem: &Problem) -> Vec<Vec<[f64; 2]>> {
         self.held.iter().map(|motion| motion.at_vertices(problem, &self.components)).collect()
+    }
+
+    /// Those of `held_along_edges` as displacements of every vertex: the ones that a method in stresses has to hold.
+    pub fn null_motions(&self, problem: &Problem) -> Vec<Vec<[f64; 2]>> {
+        self.held_along_edges.iter().map(|motion| motion.at_vertices(problem, &self.components)).collect()
     }
 }
 
@@ -156,16 +163,18 @@ pub fn check_after(
     let runs = restraint::runs(problem, &components, degree);
     let clamped = restraint::clamped(problem, &components);
 
-    let (mut held, mut vertex_pins, mut edge_pins) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut held, mut held_along_edges) = (Vec::new(), Vec::new());
+    let (mut vertex_pins, mut edge_pins) = (Vec::new(), Vec::new());
     let (mut both_ways, mut one_way, mut beyond_mesh, mut impossible) =
         (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for group in restraint::groups(&components, &clamped, &runs) {
         let mut found = Verdict::of(problem, &group, &loads, before)?;
         lasting.extend(found.lasting.take());
         let words = |motion: &RigidMotion| words::moving(problem, &group, &loads, motion);
-        let at_vertices = found.held_at_vertices(problem, &group);
-        vertex_pins.extend(pins::vertex_pins(problem, &group, &found.held, &at_vertices)?);
-        edge_pins.extend(pins::edge_pins(problem, &group, &found.held)?);
+        let along_edges = found.held_along_edges(problem, &group);
+        vertex_pins.extend(pins::vertex_pins(problem, &group, &along_edges, &found.held)?);
+        edge_pins.extend(pins::edge_pins(problem, &group, &along_edges)?);
+        held_along_edges.extend(along_edges.iter().map(|direction| motion(&group, direction).0));
         for direction in &found.held {
             let motion = motion(&group, direction).0;
             // The others are only counted.
@@ -220,7 +229,7 @@ pub fn check_after(
             .unwrap_or(RigidMotion { component: vec![[0.0; 3]; components.count()] });
         (Solvability::Impossible { motion, work, bodies, sentence }, Vec::new())
     };
-    Ok(Statics { components, loads, held, vertex_pins, edge_pins, equilibrium, notes, lasting })
+    Ok(Statics { components, loads, held, held_along_edges, vertex_pins, edge_pins, equilibrium, notes, lasting })
 }
 
 /// The motion of the pieces for a vector of group unknowns, scaled to largest displacement 1, and the factor that took.

@@ -1,44 +1,46 @@
 //! Rows of the jumps by which a rigid motion opens contacts.
 //!
 //! Along a straight run a jump is linear: its values at two points say all of it. Where the direction turns, n̂ and the motion are both
-//! linear along the edge and the jump is quadratic. It vanishes at both ends of an edge of a ring that turns about the centre of an
-//! eccentric obstacle, and yet pressure along the edge resists that: the coefficient between the ends counts as well.
+//! linear along the edge and the jump is quadratic. Of a curve that the edges stand for, what happens at vertices is what is meant, and so
+//! whether loads can be balanced, and what is free, is asked there. But a ring that turns about the centre of an eccentric pin, and opens
+//! no vertex, opens what is between them, and stresses on the edges have to balance that too.
 
 use nalgebra::{DVector, Vector3};
 
 use super::restraint::{Group, Part, Run, along, unit};
-use crate::element::polynomial::side;
 
-/// What tells whether a run opens.
+/// Which two points of a run tell whether it opens.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Points {
-    /// Its ends: any pressure along it. Where the direction turns, the Bernstein coefficients of the jump.
+    /// Its ends.
     Ends,
-    /// [`Run::reach`]: the pressures of the mesh. Where the direction turns, the work of each of their coefficients.
+    /// [`Run::reach`].
     Reach,
-    /// Its ends alone, as for displacements that contact holds at vertices.
+}
+
+/// Where contacts keep closed in a motion that is allowed both ways.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Ties {
+    /// At vertices, where the direction turns.
     Vertices,
+    /// All along edges.
+    Edges,
 }
 
 impl Points {
-    /// The points of `run` at which it is told what touches.
+    /// The points of `run`.
     fn of(self, run: &Run) -> [[f64; 2]; 2] {
         match self {
-            Points::Ends | Points::Vertices => run.ends,
+            Points::Ends => run.ends,
             Points::Reach => run.reach,
         }
     }
 }
 
 impl Group<'_> {
-    /// The rows, of unit length, that are not positive in a motion that does not penetrate along `run`.
-    pub fn jumps(&self, run: &Run, points: Points) -> Vec<Vec<Part>> {
-        let rows = match (run.turning, points) {
-            (None, _) | (_, Points::Vertices) => points.of(run).map(|point| self.across(run, point)).to_vec(),
-            (Some(ends), Points::Ends) => self.quadratic(run, ends).to_vec(),
-            (Some(ends), Points::Reach) => moments(&self.quadratic(run, ends), run.degree[0]),
-        };
-        rows.into_iter().map(unit).collect()
+    /// The rows, of unit length, that are not positive in a motion that does not penetrate at the `points` of `run`.
+    pub fn jumps(&self, run: &Run, points: Points) -> [Vec<Part>; 2] {
+        points.of(run).map(|point| self.jump(run, point))
     }
 
     /// The Bernstein coefficients of the jump along a run with these directions at its ends.
@@ -54,19 +56,19 @@ impl Group<'_> {
         unit(self.across(run, point))
     }
 
-    /// The rows that vanish when `run` keeps closed: where its direction turns, its [`Self::jumps`]; otherwise the relative displacement
-    /// of its middle and the relative rotation, which unlike jumps at its two ends stay independent however short the run is. With
-    /// friction the run does not slide either.
-    pub fn ties(&self, run: &Run, points: Points) -> Vec<Vec<Part>> {
-        let mut ties = match (run.turning, points) {
-            (Some(_), Points::Vertices) => self.jumps(run, points),
-            (Some(_), _) => self.jumps(run, Points::Ends),
+    /// The rows that vanish when `run` keeps closed. Where its direction turns they are the jumps at its ends, and with [`Ties::Edges`] the
+    /// coefficient between; otherwise the relative displacement of its middle and the relative rotation, which unlike jumps at its two ends
+    /// stay independent however short the run is. With friction the run does not slide either.
+    pub fn ties(&self, run: &Run, ties: Ties) -> Vec<Vec<Part>> {
+        let mut rows = match (run.turning, ties) {
+            (Some(ends), Ties::Edges) => self.quadratic(run, ends).map(unit).to_vec(),
+            (Some(_), Ties::Vertices) => self.jumps(run, Points::Ends).to_vec(),
             (None, _) => self.straight_ties(run).to_vec(),
         };
         if run.friction > 0.0 {
-            ties.push(unit(self.slip(run, run.ends[0])));
+            rows.push(unit(self.slip(run, run.ends[0])));
         }
-        ties
+        rows
     }
 
     fn straight_ties(&self, run: &Run) -> [Vec<Part>; 2] {
@@ -91,14 +93,4 @@ impl Group<'_> {
         let touching: Vec<_> = ends.filter(|(run, end)| jump(run, *end).abs() <= 1e-5 * size).collect();
         (turns && !touching.is_empty()).then_some(touching)
     }
-}
-
-/// The work of each coefficient of a pressure of this degree on a jump with these Bernstein coefficients.
-fn moments(jump: &[Vec<Part>; 3], degree: usize) -> Vec<Vec<Part>> {
-    let weights: Vec<Vec<f64>> = (0..3).map(|i| side::moments(&[0, 1, 2].map(|k| f64::from(i == k)), degree)).collect();
-    let part = |k: usize, at: usize| {
-        let sum = (0..3).fold(Vector3::zeros(), |sum, i| sum + weights[i][k] * jump[i][at].1);
-        (jump[0][at].0, sum)
-    };
-    (0..=degree).map(|k| (0..jump[0].len()).map(|at| part(k, at)).collect()).collect()
 }

@@ -113,7 +113,7 @@ fn bounded(certified: &Certified, options: &Options, quantities: &[&Quantity]) -
         Some(kept) => Ok(kept),
         None => {
             let options = Options { elements: elements(options, &dual.stress), ..options.clone() };
-            own = Factorised::new(problem, &motions, &options).map_err(|error| error.to_string());
+            own = Factorised::new(problem, &statics.null_motions(problem), &options).map_err(|error| error.to_string());
             own.as_ref().map_err(Clone::clone)
         }
     };

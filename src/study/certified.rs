@@ -192,7 +192,7 @@ pub(super) fn stresses(
 ) -> Result<DualSolution, StudyError> {
     let Balanced { statics, .. } = Balanced::new(problem, &options.elements, None)?;
     expressible(&statics, options)?;
-    let motions = statics.held_at_vertices(problem);
+    let motions = statics.null_motions(problem);
     let dual = options.on_threads(|| dual::solve(method, problem, &motions, options))?;
     Ok(without_stress(problem, dual))
 }
@@ -210,7 +210,7 @@ pub(super) fn solve_balanced(
 ) -> Result<Certified, StudyError> {
     let began = Instant::now();
     expressible(&statics, options)?;
-    let motions = statics.held_at_vertices(&problem);
+    let motions = statics.null_motions(&problem);
     // Ranks keep nothing for quantities, and begin with nothing.
     let divides = method.divides() && !options.keep_factor && start.is_none();
     let (mut dual, bracket) = options.on_threads(|| {

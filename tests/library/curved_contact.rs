@@ -14,7 +14,7 @@ fn problem(text: &str) -> Problem {
 
 /// The motions that nothing holds, as displacements of the vertices.
 fn motions(problem: &Problem) -> Vec<Vec<[f64; 2]>> {
-    statics::check(problem).expect("decided").held_at_vertices(problem)
+    statics::check(problem).expect("decided").null_motions(problem)
 }
 
 fn solve(problem: &Problem, method: &dyn DualMethod) -> DualSolution {

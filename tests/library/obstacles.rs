@@ -5,7 +5,7 @@ use crate::support::toml::Toml;
 use hypercircle::dual::{ActiveSet, Clarabel, Condensed, DualMethod, Options};
 use hypercircle::problem::Problem;
 use hypercircle::scene::Scene;
-use hypercircle::statics;
+use hypercircle::statics::{self, Solvability};
 use hypercircle::study::{Certified, certify};
 
 fn problem(text: &str) -> Problem {
@@ -152,25 +152,32 @@ fn what_does_not_belong_to_an_obstacle_is_refused() {
     }
 }
 
-/// A pin beside the centre of the bore moves the ring as a whole, to first order. The normals of the pin meet in its centre, and at
-/// vertices nothing hinders the ring to turn about it; between them the jump of that motion does not vanish.
+/// A pin beside the centre of the bore moves the ring as a whole, to first order. Its normals meet in its centre, and at vertices nothing
+/// hinders the ring to turn about it; between them the jump of that motion does not vanish, and stresses have to balance it.
 #[test]
-fn a_ring_turns_freely_about_its_own_centre_alone() {
+fn a_ring_turns_about_the_centre_of_its_pin() {
     let methods: [&dyn DualMethod; 3] = [&Condensed::default(), &ActiveSet::default(), &Clarabel::default()];
     let central = bracket(&solved(&ring_on_pin([0.0; 2])));
-    for (shift, free, apart) in
+    for (shift, null, apart) in
         [(0.0, 1, 0.0), (1e-11, 1, 1e-8), (1e-5, 0, 1e-5), (1e-3, 0, 1e-3), (0.2, 0, f64::INFINITY)]
     {
-        let problem = problem(&ring_on_pin([0.6 * shift, -0.8 * shift]));
+        let scene = ring_on_pin([0.6 * shift, -0.8 * shift]);
+        let problem = problem(&scene);
         let statics = statics::check(&problem).expect("decided");
-        let pins = statics.vertex_pins.iter().filter(|pin| pin.of_vertices == (free == 0));
-        assert_eq!((statics.held.len(), pins.count(), statics.vertex_pins.len()), (free, 1, 1), "{shift}");
+        let pins: Vec<bool> = statics.vertex_pins.iter().map(|pin| pin.of_vertices).collect();
+        assert_eq!((statics.held.len(), statics.held_along_edges.len(), pins), (1, null, vec![null == 0]), "{shift}");
         for method in methods {
             let found = certify(problem.clone(), method, &Options::default()).expect("solves");
             let residual = found.dual.equilibrium.residual();
             assert!(residual < 1e-9, "{} at {shift}: {residual:e}", method.name());
             let ([a, b], [c, d]) = (bracket(&found), central);
             assert!(a <= d * (1.0 + apart) && c <= b * (1.0 + apart), "{shift}: {a} … {b}, {c} … {d}");
+        }
+        // A weight through both centres has no moment about either; one across turns the ring.
+        for (weight, balanced) in [([0.6, -0.8], true), ([0.8, 0.6], shift < 1e-10)] {
+            let text = scene.replace("[bodies.ring]\n", &format!("[bodies.ring]\nbody_force = {weight:?}\n"));
+            let possible = statics::check(&self::problem(&text)).expect("decided").equilibrium;
+            assert_eq!(matches!(possible, Solvability::Possible { .. }), balanced, "{weight:?} at {shift}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::span::Span;
 use crate::statics::balance::{Cone, RANK};
 use crate::statics::cone;
-use crate::statics::openings::Points;
+use crate::statics::openings::{Points, Ties};
 use crate::statics::restraint::{Group, Part};
 use nalgebra::{DMatrix, DVector};
 
@@ -19,14 +19,15 @@ pub(in crate::statics) struct DenseCone<'a> {
 }
 
 impl<'a> DenseCone<'a> {
-    /// From rows that must vanish and the points of contact runs where jumps must not be positive.
-    pub fn new(group: &'a Group<'a>, vanishing: &[Part], points: Points) -> Self {
+    /// From rows that must vanish, the two points of each contact run where the jump must not be positive, and where contact keeps closed in
+    /// motions allowed both ways.
+    pub fn new(group: &'a Group<'a>, vanishing: &[Part], points: Points, ties: Ties) -> Self {
         let supports = group.span(vanishing);
         let mut fixed = supports.clone();
         let ties: Vec<_> = group
             .runs
             .iter()
-            .flat_map(|run| group.ties(run, points))
+            .flat_map(|run| group.ties(run, ties))
             .map(|row| supports.residual(&group.dense(&row)))
             .collect();
         fixed.extend(&ties, RANK);

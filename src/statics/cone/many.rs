@@ -15,7 +15,7 @@ use super::interior;
 use super::span::Span;
 use super::sparse::{CORRECTIONS, Row, Triangular, dense, dot, least_squares, norm, transposed};
 use crate::statics::balance::{Cone, RANK};
-use crate::statics::openings::Points;
+use crate::statics::openings::{Points, Ties};
 use crate::statics::restraint::{Group, Part, along};
 
 /// Forces and pulls below this fraction of the loads are round-off.
@@ -39,8 +39,9 @@ pub(in crate::statics) struct SparseCone<'a> {
 }
 
 impl<'a> SparseCone<'a> {
-    /// From rows (member, row) that must vanish and the points of contact runs where jumps must not be positive.
-    pub fn new(group: &'a Group<'a>, vanishing: &[Part], points: Points) -> Self {
+    /// From rows (member, row) that must vanish, the two points of each contact run where the jump must not be positive, and where contact keeps
+    /// closed in motions allowed both ways.
+    pub fn new(group: &'a Group<'a>, vanishing: &[Part], points: Points, ties: Ties) -> Self {
         let members = group.members.len();
         let mut supports = vec![Vec::new(); members];
         vanishing.iter().for_each(|(m, row)| supports[*m].push(DVector::from_column_slice(row.as_slice())));
@@ -63,7 +64,7 @@ impl<'a> SparseCone<'a> {
         }
         let mut cone = SparseCone { group, points, start, free, coordinates, held: Vec::new(), rows: Vec::new() };
         let ties: Vec<Row> =
-            group.runs.iter().flat_map(|run| group.ties(run, points)).map(|row| cone.row(&row)).collect();
+            group.runs.iter().flat_map(|run| group.ties(run, ties)).map(|row| cone.row(&row)).collect();
         if !interior::see_every_motion(&ties, coordinates) {
             cone.held = Triangular::of(coordinates, &ties).null_vectors();
         }

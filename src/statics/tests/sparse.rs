@@ -7,6 +7,7 @@ use crate::statics::balance::{Cone, Verdict};
 use crate::statics::cone::few::DenseCone;
 use crate::statics::cone::many::SparseCone;
 use crate::statics::cone::sparse::{Row, Triangular, dense, least_squares};
+use crate::statics::openings::Ties;
 use crate::statics::{Components, LoadResultants, MotionKind, Solvability, Statics, check, check_after, restraint};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -23,10 +24,10 @@ fn sparse_and_dense_cones_give_the_same_verdicts() {
                 let clamped = restraint::clamped(&problem, &components);
                 for group in restraint::groups(&components, &clamped, &runs) {
                     let few = Verdict::from_cones(&problem, &group, &loads, &[], |rows, points| {
-                        Box::new(DenseCone::new(&group, rows, points)) as Box<dyn Cone>
+                        Box::new(DenseCone::new(&group, rows, points, Ties::Vertices)) as Box<dyn Cone>
                     });
                     let many = Verdict::from_cones(&problem, &group, &loads, &[], |rows, points| {
-                        Box::new(SparseCone::new(&group, rows, points)) as Box<dyn Cone>
+                        Box::new(SparseCone::new(&group, rows, points, Ties::Vertices)) as Box<dyn Cone>
                     });
                     let (few, many) = (few.unwrap(), many.unwrap());
                     let what = format!("{} at {excess}, turned by {angle}", case.name);

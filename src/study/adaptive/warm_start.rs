@@ -60,7 +60,7 @@ pub fn guess_refined(given: &Problem, levels: usize, fine: &Problem, options: &O
     let elements = dual::carrying(&coarse, &options.elements).ok()?;
     let statics = balance(&coarse, &elements, None).ok()?;
     let options = Options { keep_factor: false, elements, ..options.clone() };
-    let motions = statics.held_at_vertices(&coarse);
+    let motions = statics.null_motions(&coarse);
     let found = options.on_threads(|| dual::solve(&Condensed::default(), &coarse, &motions, &options)).ok()?;
     let counts = contact_coefficients(fine, &dual::carrying(fine, &options.elements).ok()?);
     Some(closed_coefficients(&coarse, &found.closed, fine, &counts))

@@ -28,7 +28,7 @@ impl Solved {
     fn new(problem: Problem, elements: Elements) -> Self {
         let statics = statics::check_after(&problem, &|t| elements.degree(t), None).expect("an equilibrium");
         let options = Options { elements, ..Options::default() };
-        let motions = statics.held_at_vertices(&problem);
+        let motions = statics.null_motions(&problem);
         let dual = dual::solve(&Condensed::default(), &problem, &motions, &options).expect("solves");
         let bracket = Bracket::new(&problem, &dual);
         Solved { problem, dual, bracket }
