@@ -182,9 +182,7 @@ fn deepest(problem: &Problem, candidate: &Candidate) -> String {
 
 /// True if a field is a P1 solution of a problem in which the direction of contact turns along edges or gaps are curved.
 fn linear_where_jumps_bend(problem: &Problem, judged: &Judged) -> bool {
-    judged.candidate.is_solution
-        && judged.candidate.degree == 1
-        && (problem.contact_turns() || problem.pairs().any(|pair| !pair.bow.is_none()))
+    judged.candidate.is_solution && judged.candidate.degree == 1 && problem.jumps_bend()
 }
 
 /// The larger space has the smaller energy: one check for each degree and the next on the same cells.

@@ -220,7 +220,8 @@ fn contradictions(first: &Stored, second: &Stored) -> Vec<String> {
     found
 }
 
-fn is_same_scene(first: &Stored, second: &Stored) -> bool {
+/// True if both are reports of one scene file.
+pub(super) fn is_same_scene(first: &Stored, second: &Stored) -> bool {
     let [a, b] = [&first.provenance.scene_sha256, &second.provenance.scene_sha256];
     a == b && !a.is_empty()
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::compare::{CheckChange, Difference, Kind, word};
+use super::compare::{CheckChange, Difference, Kind, is_same_scene, word};
 use crate::compare::Check;
 use crate::report::text::number::{digits_to_tell, optional, seconds, significant};
 
@@ -49,7 +49,11 @@ pub(super) fn verdict(difference: &Difference) -> String {
         return "The two reports contradict each other.".to_string();
     }
     if !difference.is_decisive() {
-        return "Nothing decisive differs.".to_string();
+        let [first, second] = &difference.reports;
+        return match is_same_scene(first, second) {
+            true => "Nothing decisive differs.".to_string(),
+            false => "No verdict differs; the scenes do, and their numbers need not be the same.".to_string(),
+        };
     }
     let counts = [Kind::Broken, Kind::Mended, Kind::New, Kind::Missing].map(|kind| (kind, difference.count(kind)));
     let told: Vec<String> =

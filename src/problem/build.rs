@@ -241,6 +241,12 @@ impl Problem {
         self.pairs().any(|pair| !pair.direction.is_constant())
     }
 
+    /// True if what contact asks of a linear displacement between vertices is more than it asks there: its direction turns along edges, or
+    /// gaps are curved.
+    pub fn jumps_bend(&self) -> bool {
+        self.contact_turns() || self.pairs().any(|pair| !pair.bow.is_none())
+    }
+
     /// True if the direction of contact varies along any contact, on one edge or from edge to edge.
     pub fn contact_bends(&self) -> bool {
         const STRAIGHT: f64 = 1e-9;

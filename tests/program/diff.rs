@@ -41,6 +41,13 @@ fn two_runs_of_a_scene_beside_each_other() {
         page.contains("Two reports") && page.contains("1216") && !page.contains("<script") && !page.contains("http")
     );
 
+    let mut command = hypercircle(folder, ["solve"]);
+    command.arg(case("patch")).args(["--quiet", "--out", "patch"]);
+    ended("another scene", &run(command), 0, &[]);
+    let foreign = diff(folder, &["a", "patch"]);
+    ended("another scene", &foreign, 0, &["different content", "No verdict differs; the scenes do"]);
+    assert!(!told(&foreign).contains("Nothing decisive"), "{}", told(&foreign));
+
     // A bracket that lies elsewhere, and a check that no longer passes.
     let report = std::fs::read_to_string(folder.join("fine/report.json")).expect("a report");
     let mut other: serde_json::Value = serde_json::from_str(&report).expect("JSON");

@@ -211,7 +211,7 @@ pub fn verified(args: &Args, session: &Session, folder: Option<&Path>) -> Result
     let candidates = candidates(&certified.problem, solutions);
     let mut comparison = compare(&certified.problem, &certified.dual, &certified.bracket, candidates, &allow);
     if let Some((coulomb, models)) = models {
-        comparison.checks.extend(coulomb.of_models(&models, &comparison.contacts));
+        comparison.checks.extend(coulomb.of_models(&certified.problem, &models, &comparison.contacts));
     }
     let wanted = args.solve.tolerance.map(|wanted| tolerance_check(certified, &comparison, wanted, &allow));
     comparison.checks.extend(wanted);

@@ -4,26 +4,39 @@ use super::Coulomb;
 use crate::compare::name::OfField;
 use crate::compare::{Basis, Check, ContactSummary, chosen};
 use crate::primal::{PrimalCoulomb, PrimalSolution, Space};
+use crate::problem::Problem;
 
 /// Part of the energy at stake that rounding may leave of a model's.
 const ROUNDING: f64 = 1e-9;
 
 impl Coulomb {
-    /// The checks of what models found of Coulomb friction; `contacts` are those of the stress side.
-    pub fn of_models(&self, solutions: &[PrimalSolution], contacts: &[ContactSummary]) -> Vec<Check> {
+    /// The checks of what models found of Coulomb friction on `problem`; `contacts` are those of the stress side.
+    pub fn of_models(
+        &self,
+        problem: &Problem,
+        solutions: &[PrimalSolution],
+        contacts: &[ContactSummary],
+    ) -> Vec<Check> {
         let own = |solution: &PrimalSolution| {
             let name = format!("{} {}", solution.solver, Space { cells: solution.cells, degree: solution.degree });
             let coulomb = solution.coulomb.as_ref()?;
-            Some([self.no_less(&name, solution, coulomb), Some(friction(&name, coulomb, contacts))])
+            Some([self.no_less(problem, &name, solution, coulomb), Some(friction(&name, coulomb, contacts))])
         };
         solutions.iter().filter_map(own).flatten().flatten().collect()
     }
 
     /// The energy of a model with any limits is no less than that without friction.
-    fn no_less(&self, name: &str, solution: &PrimalSolution, coulomb: &PrimalCoulomb) -> Option<Check> {
+    fn no_less(
+        &self,
+        problem: &Problem,
+        name: &str,
+        solution: &PrimalSolution,
+        coulomb: &PrimalCoulomb,
+    ) -> Option<Check> {
         let (lowest, energy) = (self.lowest?, coulomb.energy?);
         let rounding = solution.energy_rounding.unwrap_or(0.0) + ROUNDING * lowest.abs().max(energy.abs());
-        let admissible = solution.admissible.unwrap_or(false);
+        // Linear fields meet contact at vertices, and may penetrate between them where it bends.
+        let admissible = solution.admissible.unwrap_or(false) && (solution.degree > 1 || !problem.jumps_bend());
         admissible.then(|| {
             Check::with_difference(
                 &OfField::Coulomb.of(name),

@@ -58,3 +58,22 @@ fn on_a_pin_beside_its_centre_both_models_agree() {
         assert_eq!(run.code, Some(0), "{centre:?}: {}{}", run.stdout, run.stderr);
     }
 }
+
+/// Linear displacements meet contact at vertices alone where it turns: their energy with Coulomb friction may lie below that of none.
+#[test]
+fn with_coulomb_friction_linear_displacements_are_not_blamed() {
+    if !with_reference() {
+        return;
+    }
+    let text = "model.kinematics = \"plane-strain\"\nmesh.file = \"disc_in_ring.msh\"\nbodies.b = { young = 1.0, poisson = 0.3 }\n\
+                bodies.a = { young = 1.0, poisson = 0.3, body_force = [0.0, -0.005] }\n\
+                supports = [{ on = \"wall\", type = \"clamped\" }]\n\
+                contacts = [{ between = [\"rim\", \"bore\"], gap = -0.01, friction = { coefficient = 0.3 } }]\n";
+    let (folder, scene) = written(text);
+    let mesh = include_str!("../../support/scenes/disc_in_ring.msh");
+    std::fs::write(folder.path().join("disc_in_ring.msh"), mesh).expect("written");
+    let run = Run::new("verify", &scene, &[]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let report = run.report().0.to_string();
+    assert!(report.contains("coulomb/FEniCSx P1/friction-force"), "{report}");
+}
