@@ -13,6 +13,7 @@ use crate::errors::{fault, told};
 use crate::line::Line;
 use hypercircle::cli::commands::certify::{Args, judged, read, stress_side};
 use hypercircle::cli::commands::verify;
+use hypercircle::cli::given::field::FieldFrom;
 use hypercircle::cli::session::{DualRun, Session, refuse_unknown};
 use hypercircle::cli::{CliError, Exit};
 use hypercircle::report::{self, Dossier};
@@ -71,14 +72,8 @@ impl Claims<'_, '_> {
                 "one thing has to be certified; give points, triangles and displacement, or a file, or values",
             ));
         }
-        if self.file.is_none() && self.field.is_some() {
-            return Err(fault("field names the point data of a file, and there is none; leave it out"));
-        }
-        if self.file.is_none() && arrays.is_none() && self.solution {
-            return Err(fault(
-                "solution is about a displacement field, and only values are certified; leave it out, or give the field",
-            ));
-        }
+        let from = FieldFrom::of(self.file.is_some(), arrays.is_some());
+        from.refuse_unheard(self.field.is_some(), self.solution).map_err(told)?;
         let line = how
             .path("displacement", self.file.as_deref())
             .value("displacement", arrays.as_ref().map(|(name, _)| name))

@@ -75,12 +75,16 @@ impl Statics {
 
     /// The motions of `held` as displacements of every vertex.
     pub fn held_at_vertices(&self, problem: &Problem) -> Vec<Vec<[f64; 2]>> {
-        self.held.iter().map(|motion| motion.at_vertices(problem, &self.components)).collect()
+        self.at_vertices(problem, &self.held)
     }
 
     /// Those of `held_along_edges` as displacements of every vertex: the ones that a method in stresses has to hold.
     pub fn null_motions(&self, problem: &Problem) -> Vec<Vec<[f64; 2]>> {
-        self.held_along_edges.iter().map(|motion| motion.at_vertices(problem, &self.components)).collect()
+        self.at_vertices(problem, &self.held_along_edges)
+    }
+
+    fn at_vertices(&self, problem: &Problem, motions: &[RigidMotion]) -> Vec<Vec<[f64; 2]>> {
+        motions.iter().map(|motion| motion.at_vertices(problem, &self.components)).collect()
     }
 }
 

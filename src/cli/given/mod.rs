@@ -1,5 +1,6 @@
 //! The options of a command as they were given, to be given once more.
 
+pub mod field;
 pub mod friction;
 pub mod judge;
 pub mod memory;

@@ -131,7 +131,8 @@ impl Content {
         order.sort_unstable();
         let index: HashMap<u64, usize> = order.iter().enumerate().map(|(i, tag)| (*tag, i)).collect();
         let position: Vec<[f64; 3]> = order.iter().map(|tag| self.nodes[tag]).collect();
-        let (height, size) = (self.height(&index, &position), largest(&position));
+        let size = position.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let plane = Plane { height: self.height(&index, &position, size), size };
         let mut raw = RawMesh { points: position.iter().map(|p| [p[0], p[1]]).collect(), ..RawMesh::default() };
         let mut counts = Counts::default();
         let mut sets = self.sets(&index);
@@ -147,8 +148,8 @@ impl Content {
                 };
                 nodes.push(node);
             }
-            if !is_plane(&nodes, &position, height, size) {
-                return Err(self.out_of_plane(file, &index, &position, height));
+            if !plane.holds(&nodes, &position) {
+                return Err(self.out_of_plane(file, &index, &position, plane));
             }
             let corners = element.kind.corners();
             if nodes.len() > corners {
@@ -197,10 +198,9 @@ impl Content {
     }
 
     /// The z of the plane in which the nodes of all cells lie, or zero where they lie in none.
-    fn height(&self, index: &HashMap<u64, usize>, position: &[[f64; 3]]) -> f64 {
+    fn height(&self, index: &HashMap<u64, usize>, position: &[[f64; 3]], size: f64) -> f64 {
         let mut used = self.elements.iter().flat_map(|e| &e.nodes).filter_map(|tag| Some(position[*index.get(tag)?]));
         let Some([_, _, first]) = used.next() else { return 0.0 };
-        let size = largest(position);
         if used.all(|p| (p[2] - first).abs() <= FLAT * size) { first } else { 0.0 }
     }
 
@@ -214,14 +214,14 @@ impl Content {
     }
 
     /// Says which elements have nodes outside the plane, how many they are, and how far it goes.
-    fn out_of_plane(&self, file: &Path, index: &HashMap<u64, usize>, position: &[[f64; 3]], height: f64) -> MeshError {
+    fn out_of_plane(&self, file: &Path, index: &HashMap<u64, usize>, position: &[[f64; 3]], plane: Plane) -> MeshError {
+        let height = plane.height;
         let (mut count, mut first, mut low, mut high) = (0_usize, None, height, height);
-        let size = largest(position);
         for element in &self.elements {
             let nodes: Vec<usize> = element.nodes.iter().filter_map(|tag| index.get(tag).copied()).collect();
             let heights = nodes.iter().map(|&n| position[n][2]);
             (low, high) = heights.fold((low, high), |(low, high), z| (low.min(z), high.max(z)));
-            if is_plane(&nodes, position, height, size) {
+            if plane.holds(&nodes, position) {
                 continue;
             }
             count += 1;
@@ -359,11 +359,17 @@ impl Counts {
     }
 }
 
-fn is_plane(nodes: &[usize], position: &[[f64; 3]], height: f64, size: f64) -> bool {
-    nodes.iter().all(|&n| (position[n][2] - height).abs() <= FLAT * size)
+/// The plane of a mesh.
+#[derive(Clone, Copy)]
+struct Plane {
+    height: f64,
+    /// The largest coordinate of the file.
+    size: f64,
 }
 
-/// The largest coordinate.
-fn largest(position: &[[f64; 3]]) -> f64 {
-    position.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()))
+impl Plane {
+    /// True if these nodes lie in it.
+    fn holds(self, nodes: &[usize], position: &[[f64; 3]]) -> bool {
+        nodes.iter().all(|&n| (position[n][2] - self.height).abs() <= FLAT * self.size)
+    }
 }

@@ -1,5 +1,6 @@
 //! Opening a mesh file with the reader that its name asks for.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::time::Duration;
 
@@ -42,20 +43,31 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
 
 /// True if a `.msh` file is not Gmsh's: FreeFEM's begins with three counts, GiD's with `MESH`, GetFEM's with a comment, and Fluent's with a bracket.
 fn others(text: &[u8]) -> bool {
-    let head = String::from_utf8_lossy(&text[..text.len().min(4000)]);
-    let first = head.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
-    let words: Vec<&str> = first.split_whitespace().collect();
-    let counts = words.len() == 3 && words.iter().all(|word| word.parse::<usize>().is_ok());
-    counts
+    let head = head(text);
+    let first = first(&head);
+    is_counts(first, 3)
         || first.starts_with('(')
         || first.to_ascii_lowercase().starts_with("mesh ")
         || head.contains("BEGIN POINTS LIST")
 }
 
-/// True if an `.inp` file is AVS's: behind comments, it begins with five counts.
+/// True if an `.inp` file is AVS's: it begins with five counts.
 fn is_avs(text: &[u8]) -> bool {
-    let head = String::from_utf8_lossy(&text[..text.len().min(4000)]);
-    let first = head.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
-    let words: Vec<&str> = first.split_whitespace().collect();
-    words.len() == 5 && words.iter().all(|word| word.parse::<usize>().is_ok())
+    is_counts(first(&head(text)), 5)
+}
+
+/// The beginning of a text, far enough to tell its format.
+fn head(text: &[u8]) -> Cow<'_, str> {
+    String::from_utf8_lossy(&text[..text.len().min(4000)])
+}
+
+/// The first line that is neither empty nor a comment.
+fn first(head: &str) -> &str {
+    head.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default()
+}
+
+/// True if a line is so many counts.
+fn is_counts(line: &str, count: usize) -> bool {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    words.len() == count && words.iter().all(|word| word.parse::<usize>().is_ok())
 }

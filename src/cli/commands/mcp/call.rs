@@ -12,6 +12,7 @@ use super::inside;
 use crate::cli::commands::certify::{judged, read, stress_side};
 use crate::cli::commands::{certify, solve, verify};
 use crate::cli::conclude::Particulars;
+use crate::cli::given::field::FieldFrom;
 use crate::cli::given::options::{Limits, MOST_REFINEMENTS, NamedTolerance, SolveOptions, as_tolerance};
 use crate::cli::given::threads;
 use crate::cli::session::{Session, refuse_unknown};
@@ -113,15 +114,7 @@ impl Call {
             let remedy = "give a file, or points, triangles and displacement, or (to certify) values";
             return Err(bad("one thing has to be certified", remedy));
         }
-        if file.is_none() && field.is_some() {
-            return Err(bad("field names the point data of a file, and there is none", "leave it out, or give a file"));
-        }
-        if solution && file.is_none() && arrays.is_none() {
-            return Err(bad(
-                "solution is about a displacement field, and only values are certified",
-                "leave it out, or give the field",
-            ));
-        }
+        FieldFrom::of(file.is_some(), arrays.is_some()).refuse_unheard(field.is_some(), solution)?;
         // An option in the place of what is set below.
         let mut args: certify::Args = defaults(&["--displacement=displacement"])?;
         self.stresses(&mut args.solve, None, None)?;

@@ -2,7 +2,6 @@
 
 use super::DAMAGED;
 use super::keyword::{Keyword, Place};
-use super::scope::Shapeless;
 use crate::mesh::MeshError;
 use crate::mesh::files::content::Kind;
 
@@ -40,30 +39,19 @@ pub(super) fn rows(keyword: &Keyword, name: &str, kind: Kind, count: usize) -> R
     Ok(rows)
 }
 
-/// Numbers of elements of any count of nodes, which go on behind a comma at the end of a line.
-pub(super) fn idle(keyword: &Keyword) -> Vec<u64> {
-    let before = [false].into_iter().chain(keyword.lines.iter().map(|line| line.continues));
-    let starts = keyword.lines.iter().zip(before).filter(|(_, continued)| !continued);
-    starts.filter_map(|(line, _)| line.fields.first()?.parse().ok()).collect()
-}
-
-/// Nodes and place of each element of a type without a shape, where they are enough for one.
-pub(super) fn shapeless(keyword: &Keyword, name: &str) -> Vec<Shapeless> {
-    let mut all: Vec<Shapeless> = Vec::new();
+/// Elements of any count of nodes, which go on behind a comma at the end of a line.
+pub(super) fn of_any_length(keyword: &Keyword) -> Vec<Row> {
+    let mut all: Vec<Row> = Vec::new();
     let mut continued = false;
     for line in &keyword.lines {
-        let numbers = line.fields.iter().filter_map(|field| field.parse::<u64>().ok());
-        match all.last_mut().filter(|_| continued) {
-            Some(last) => last.nodes.extend(numbers),
-            None => all.push(Shapeless {
-                name: name.to_owned(),
-                nodes: numbers.skip(1).collect(),
-                place: line.place.clone(),
-            }),
+        let numbers = |from: usize| line.fields.iter().skip(from).filter_map(|field| field.parse().ok());
+        match (all.last_mut(), line.fields.first().and_then(|field| field.parse().ok())) {
+            (Some((_, nodes, _)), _) if continued => nodes.extend(numbers(0)),
+            (_, Some(tag)) => all.push((tag, numbers(1).collect(), line.place.clone())),
+            (_, None) => {}
         }
         continued = line.continues;
     }
-    all.retain(|own| own.nodes.len() >= 3);
     all
 }
 

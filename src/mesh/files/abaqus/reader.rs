@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use super::DAMAGED;
 use super::assembly::{Instance, Position};
 use super::element::{Family, family, made_for};
-use super::elements::{idle, in_space, rows, shapeless};
+use super::elements::{in_space, of_any_length, rows};
 use super::keyword::{Keyword, Line, Place};
 use super::remarks::Remarks;
-use super::scope::{Cell, Entry, Member, Of, Operation, Patch, Scope, member, members};
+use super::scope::{Cell, Entry, Member, Of, Operation, Patch, Scope, Shapeless, member, members};
 use super::side::{LABELS, Label};
 use crate::mesh::MeshError;
 use crate::scene::Kinematics;
@@ -152,7 +152,8 @@ impl Reader {
     fn elements(&mut self, keyword: &Keyword) -> Result<(), MeshError> {
         own_lines(keyword)?;
         let name = keyword.required("TYPE")?;
-        let shape = match family(name) {
+        let family = family(name);
+        let shape = match family {
             Family::Plane(kind, count) => Some((kind, count, false)),
             Family::Shell(kind, count) => Some((kind, count, true)),
             Family::Rigid(kind, count) if self.all_rigid => Some((kind, count, true)),
@@ -160,13 +161,8 @@ impl Reader {
                 self.remarks.rigid_cells(name);
                 None
             }
-            Family::Idle => {
+            Family::Idle | Family::Shapeless => {
                 self.remarks.left_out(name);
-                None
-            }
-            Family::Shapeless => {
-                self.remarks.left_out(name);
-                self.scope().mesh.shapeless.extend(shapeless(keyword, name));
                 None
             }
             Family::Space => return Err(in_space(keyword, name)),
@@ -182,7 +178,7 @@ impl Reader {
             self.made_for.push((kinematics, name.to_ascii_uppercase()));
         }
         let mesh = &mut self.scope().mesh;
-        let tags = match shape {
+        let tags: Vec<u64> = match shape {
             Some((kind, count, shell)) => {
                 let rows = rows(keyword, name, kind, count)?;
                 for (tag, nodes, place) in &rows {
@@ -196,7 +192,16 @@ impl Reader {
                 mesh.cells.extend(rows.into_iter().map(cell));
                 tags
             }
-            None => idle(keyword),
+            None => {
+                let rows = of_any_length(keyword);
+                let tags = rows.iter().map(|(tag, _, _)| *tag).collect();
+                if family == Family::Shapeless {
+                    let enough = rows.into_iter().filter(|(_, nodes, _)| nodes.len() >= 3);
+                    let own = |(_, nodes, place)| Shapeless { name: name.to_owned(), nodes, place };
+                    mesh.shapeless.extend(enough.map(own));
+                }
+                tags
+            }
         };
         mesh.elements.extend(&tags);
         self.scope().list(Of::Elements, keyword.parameter("ELSET"), &tags, &keyword.place);

@@ -116,17 +116,22 @@ impl Mesh {
         }
     }
 
-    /// Refuses an element with a node that is not there, and one without a shape where no cell stands on its nodes: a body would lack it.
-    pub fn check(&self) -> Result<(), MeshError> {
+    /// Refuses an element without a shape where no cell stands on its nodes: a body would lack it.
+    fn check_shapeless(&self) -> Result<(), MeshError> {
+        if self.shapeless.is_empty() {
+            return Ok(());
+        }
         let cells = self.cells.iter().filter(|cell| cell.kind != Kind::Line);
         let covered: HashSet<u64> = cells.flat_map(|cell| &cell.nodes).copied().collect();
-        if let Some(first) = self.shapeless.iter().find(|own| own.nodes.iter().any(|node| !covered.contains(node))) {
-            let what = format!(
-                "elements {} have no shape that is known, and no plane element stands on their nodes",
-                first.name
-            );
-            return Err(first.place.fault(what, "write them as CPS4, CPE4 or the like, in the order of their corners"));
-        }
+        let is_lost = |own: &&Shapeless| own.nodes.iter().any(|node| !covered.contains(node));
+        let Some(Shapeless { name, place, .. }) = self.shapeless.iter().find(is_lost) else { return Ok(()) };
+        let what = format!("elements {name} have no shape that is known, and no plane element stands on their nodes");
+        Err(place.fault(what, "write them as CPS4, CPE4 or the like, in the order of their corners"))
+    }
+
+    /// Refuses an element with a node that is not there, and one without a shape where no cell stands on its nodes.
+    pub fn check(&self) -> Result<(), MeshError> {
+        self.check_shapeless()?;
         for cell in &self.cells {
             if let Some(node) = cell.nodes.iter().find(|node| !self.nodes.contains_key(node)) {
                 let [tag, node] = [cell.tag, *node].map(|number| number.saturating_sub(self.moved));

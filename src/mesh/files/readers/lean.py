@@ -124,11 +124,8 @@ def readable(source, target):
     with open(source, "rb") as file:
         head = file.read(500)
         rest = file.read() if b"<VTKFile" in head else b""
-    if rest:
-        whole = one_piece(head + rest)
-        changed, head, rest = whole != head + rest, whole[:500], whole[500:]
-    else:
-        changed = False
+    whole = one_piece(head + rest) if rest else head
+    changed, head, rest = whole != head + rest, whole[:500], whole[500:]
     if re.match(rb"OFF[ \t]+\d", head):
         with open(target + ".off", "wb") as file, open(source, "rb") as text:
             file.write(b"OFF\n" + text.read()[3:].lstrip(b" \t"))

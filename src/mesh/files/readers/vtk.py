@@ -7,7 +7,7 @@ VTK_NUMBERS = {"bit": "u1", "unsigned_char": "u1", "char": "i1", "signed_char": 
                "unsigned_long": "u8", "long": "i8", "vtkidtype": "i8", "float": "f4", "double": "f8", "vtktypeint64": "i8", "vtktypeuint64": "u8", "vtktypeint32": "i4",
                "vtktypeuint32": "u4", "vtktypeint16": "i2", "vtktypeuint16": "u2", "vtktypeint8": "i1", "vtktypeuint8": "u1", "vtktypefloat64": "f8", "vtktypefloat32": "f4"}
 # Names of meshio by VTK's number of a cell and its number of nodes.
-VTK_CELLS = {(1, 1): "vertex", (3, 2): "line", (4, 2): "line", (5, 3): "triangle", (7, 3): "triangle", (7, 4): "quad", (8, 4): "pixel", (9, 4): "quad", (10, 4): "tetra",
+VTK_CELLS = {(3, 2): "line", (4, 2): "line", (5, 3): "triangle", (7, 3): "triangle", (7, 4): "quad", (8, 4): "pixel", (9, 4): "quad", (10, 4): "tetra",
              (12, 8): "hexahedron", (13, 6): "wedge", (14, 5): "pyramid", (21, 3): "line3", (22, 6): "triangle6", (23, 8): "quad8", (28, 9): "quad9", (68, 2): "line",
              (68, 3): "line3", (69, 3): "triangle", (69, 6): "triangle6", (70, 4): "quad", (70, 9): "quad9"}
 # Cells of polygons, by section, in the order in which VTK counts them.
@@ -51,11 +51,10 @@ class VtkText:
             raise Unreadable(f"it announces {count} numbers, and has fewer")
         if self.binary:
             kind = numpy.dtype(">" + VTK_NUMBERS[kind])
-            size = count * kind.itemsize if kind.itemsize > 1 or count == 0 else count
-            rest = self.data[self.at:self.at + size]
-            if len(rest) < size:
+            rest = self.data[self.at:self.at + count * kind.itemsize]
+            if len(rest) < count * kind.itemsize:
                 raise Unreadable("it is cut off")
-            self.at += size
+            self.at += len(rest)
             return numpy.frombuffer(rest, kind).astype(kind.newbyteorder("="))
         found = []
         for match in re.compile(rb"\S+").finditer(self.data, self.at):
@@ -157,8 +156,8 @@ def read_legacy_vtk(source):
 def vtk_mesh(meshio, numpy, points, cells, data):
     blocks, members = [], []
     for number, (kind, nodes) in enumerate(cells):
-        if kind in (2, 1) or kind == 0:
-            # Points, each or many of them a cell, and none.
+        if kind in (0, 1, 2):
+            # Nothing, a point, and many points.
             continue
         if (kind, len(nodes)) not in VTK_CELLS:
             raise Unreadable(f"it has cells of VTK's kind {kind} with {len(nodes)} nodes, which are not read: triangles and quadrilaterals of first and second order are")
@@ -168,7 +167,7 @@ def vtk_mesh(meshio, numpy, points, cells, data):
             members.append([])
         blocks[-1][1].append(nodes)
         members[-1].append(number)
-    plain = lambda name: urllib.parse.unquote(name)
+    plain = urllib.parse.unquote
     flat = lambda values: values[:, 0] if values.shape[1] == 1 else values
     of_cells = {plain(name): [flat(values)[own] for own in members] for name, values in data.get("CELL_DATA", {}).items() if len(values) == len(cells)}
     of_points = {plain(name): flat(values) for name, values in data.get("POINT_DATA", {}).items() if len(values) == len(points)}
