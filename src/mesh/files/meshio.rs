@@ -17,6 +17,14 @@ const NOT_ITS_FORMAT: i32 = 46;
 /// How long meshio may read one file where nobody says otherwise.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 
+/// Runs the script that its first argument names: it is longer than one argument may be.
+const RUN: &str = r#"
+import sys
+
+with open(sys.argv.pop(1), encoding="utf-8") as script:
+    exec(compile(script.read(), "reader", "exec"))
+"#;
+
 /// Why a file could not be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failure {
@@ -38,6 +46,8 @@ pub fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> Result<
     let folder = Scratch::new().map_err(no_folder)?;
     let place = folder.folder("run").map_err(no_folder)?;
     let target = folder.path().join("result.json");
+    let reader = folder.path().join("reader.py");
+    std::fs::write(&reader, script).map_err(no_folder)?;
     let file = std::path::absolute(file).map_err(no_folder)?;
     let chosen = std::env::var_os("HYPERCIRCLE_PYTHON");
     if let Some(name) = chosen.as_deref().filter(|name| python::find(Path::new(name)).is_none()) {
@@ -46,9 +56,9 @@ pub fn run(script: &str, file: &Path, instead: &str, limit: Duration) -> Result<
     }
     let names = chosen.iter().map(Path::new).chain(["python3", "/usr/bin/python3"].map(Path::new));
     for interpreter in names.filter_map(python::find) {
-        let mut command = python::command(&interpreter, script, &place, &[], None).map_err(no_folder)?;
+        let mut command = python::command(&interpreter, RUN, &place, &[], None).map_err(no_folder)?;
         // meshio wraps its messages at the width of the terminal.
-        command.arg(&file).arg(&target).env("COLUMNS", "1000");
+        command.arg(&reader).arg(&file).arg(&target).env("COLUMNS", "1000");
         let Ok(ended) = supervise(&mut command, limit) else { continue };
         match ended.outcome {
             Outcome::Exit(status) if status.success() => {

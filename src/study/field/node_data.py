@@ -58,6 +58,6 @@ def by_node(source, target):
     except (ValueError, IndexError, StopIteration) as error:
         raise Unreadable(f"its $Nodes or $NodeData do not follow the format of Gmsh ({error})") from None
     copy = target + ".msh"
-    with open(copy, "w", encoding="latin-1") as file:
+    with open(copy, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")
     return copy

@@ -50,7 +50,7 @@ def read_own(source, reader):
         return found
     except Unreadable as error:
         reason = str(error)
-    except (ValueError, KeyError, IndexError, TypeError, AttributeError, struct.error, EOFError, OSError) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, struct.error, EOFError, OSError, OverflowError) as error:
         reason = plain(error)
     refuse(located(reason, source))
 

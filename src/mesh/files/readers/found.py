@@ -1,5 +1,6 @@
 """What a reader of its own collects. Nothing here needs more than Python; a package that a format needs is named with code 45."""
 
+import bisect
 import gzip
 import math
 import os
@@ -168,6 +169,39 @@ class Found:
         return {"points": self.points, "blocks": self.blocks(), "node_sets": sets, "numbers": numbers, "notes": self.notes, "made_for": list(self.made_for.items())}
 
 
+def collapsed(tag, nodes):
+    """Shape and nodes of a quadrilateral of four or eight nodes, which is a triangle where two neighbouring corners are one node."""
+    corners, middles = nodes[:4], nodes[4:]
+    points = [i for i in range(4) if corners[i] == corners[(i + 1) % 4]]
+    if len(points) > 1 or len(set(corners)) < 4 - len(points):
+        raise Unreadable(f"element {tag} has the corners {', '.join(map(str, corners))}, which are no quadrilateral and no triangle")
+    if not points:
+        return "quadrilateral", nodes
+    gone = (points[0] + 1) % 4
+    kept = [i for i in range(4) if i != gone]
+    return "triangle", [corners[i] for i in kept] + [middles[gone if i == points[0] else i] for i in kept if middles]
+
+
+def within(tags, first, last):
+    """Those of sorted numbers that are not outside of a range."""
+    return tags[bisect.bisect_left(tags, first):bisect.bisect_right(tags, last)]
+
+
+def columns(line, widths):
+    """The texts in the columns of a line, as far as it goes."""
+    fields, at = [], 0
+    for width in widths:
+        if not line[at:].strip():
+            break
+        fields.append(line[at:at + width])
+        at += width
+    found = [field.strip() for field in fields]
+    # Where columns touch, a number that begins in its first column also ends in its last.
+    if [text for text in found if text] != line[:at].split() and any(field[0] not in " -" and field[-1] == " " for field in fields if field.strip()):
+        raise Unreadable("its numbers do not stand in the columns of the format")
+    return found
+
+
 def content_of(source):
     """The bytes of a file, which may be compressed, without the byte order mark of UTF-8."""
     opened = gzip.open if source.lower().endswith(".gz") else open
@@ -179,8 +213,14 @@ def content_of(source):
 
 
 def lines_of(source):
-    """The lines of a text file, which may be compressed."""
-    return Lines(content_of(source).decode("latin-1").splitlines(), source)
+    """The lines of a text file, which may be compressed, in UTF-8 or else in Latin-1."""
+    data = content_of(source)
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    # Python's own `splitlines` also splits at letters of Latin-1.
+    return Lines(re.sub("\r\n?", "\n", text).removesuffix("\n").split("\n") if text else [], source)
 
 
 def package(name):
@@ -194,4 +234,4 @@ def package(name):
 
 def real(text):
     """A number, with Fortran's exponent too."""
-    return float(text.replace("D", "E").replace("d", "e"))
+    return float(re.sub(r"(?<=[0-9.])[dD](?=[-+]?[0-9])", "E", text) if "d" in text or "D" in text else text)
