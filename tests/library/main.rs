@@ -45,6 +45,7 @@ mod layers;
 mod malformed;
 mod malformed_scenes;
 mod mean_pressure;
+mod mesh_ansys;
 mod mesh_dialects;
 mod mesh_files;
 mod mesh_formats;

@@ -183,7 +183,7 @@ fn formats_are_told_by_what_is_in_the_file() {
     refused(&folder, "curved.mesh", mfem.replace("6\n2\n", "6\nnodes\n"), &["straight sides"]);
     refused(&folder, "short.mesh", mfem.replace("1 3 0 1 4 3", "1 3 0 1 4"), &["3 vertices instead of 4"]);
     for (name, fragment) in [
-        ("plate.cdb", "files .cdb are in no format that is read"),
+        ("plate.stp", "files .stp are in no format that is read"),
         ("plate.k", "export the mesh as"),
         ("plate.pvtu", "give one of these"),
         ("plate.vts", "no list of cells"),

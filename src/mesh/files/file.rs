@@ -34,7 +34,7 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
             text => gmsh::parse(&text, file),
         },
         Some(extension) if extension == "inp" => match bytes()? {
-            text if is_avs(&text) => foreign::read(file, limit),
+            text if is_avs(&text) || is_ansys(&text) => foreign::read(file, limit),
             text => abaqus::parse(&text, file),
         },
         _ => foreign::read(file, limit),
@@ -54,6 +54,12 @@ fn others(text: &[u8]) -> bool {
 /// True if an `.inp` file is AVS's: it begins with five counts.
 fn is_avs(text: &[u8]) -> bool {
     is_counts(first(&head(text)), 5)
+}
+
+/// True if an `.inp` file is Ansys's: it enters its preprocessor.
+fn is_ansys(text: &[u8]) -> bool {
+    let begins = |line: &str| ["/prep7", "/batch", "/com"].iter().any(|word| line.starts_with(word));
+    head(text).lines().any(|line| begins(&line.trim_start().to_ascii_lowercase()))
 }
 
 /// The beginning of a text, far enough to tell its format.

@@ -24,6 +24,8 @@ def own_reader(source):
         return read_getfem
     if re.search(r"^(BEGIN +BULK|GRID[ *,]|C(TRIA|QUAD)[0-9A-Z]*[ *,])", head, re.MULTILINE | re.IGNORECASE):
         return read_nastran
+    if re.search(r"^\s*(/PREP7|/BATCH|/COM,\s*ANSYS|NBLOCK,)", head, re.MULTILINE | re.IGNORECASE):
+        return read_mapdl
     if low.endswith((".node", ".ele")):
         refuse("the files of Triangle (.node, .ele) are not read: export the mesh as Gmsh (.msh), Medit (.mesh) or VTU")
     lines = [line.strip() for line in head.splitlines() if line.strip() and not line.lstrip().startswith("#")]
