@@ -47,6 +47,7 @@ mod malformed_scenes;
 mod mean_pressure;
 mod mesh_ansys;
 mod mesh_dialects;
+mod mesh_dyna;
 mod mesh_files;
 mod mesh_formats;
 mod mesh_inventory;

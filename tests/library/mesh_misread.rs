@@ -184,7 +184,7 @@ fn formats_are_told_by_what_is_in_the_file() {
     refused(&folder, "short.mesh", mfem.replace("1 3 0 1 4 3", "1 3 0 1 4"), &["3 vertices instead of 4"]);
     for (name, fragment) in [
         ("plate.stp", "files .stp are in no format that is read"),
-        ("plate.k", "export the mesh as"),
+        ("plate.dxf", "export the mesh as"),
         ("plate.pvtu", "give one of these"),
         ("plate.vts", "no list of cells"),
         ("plate.ele", "Triangle"),
