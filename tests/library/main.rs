@@ -46,6 +46,7 @@ mod malformed;
 mod malformed_scenes;
 mod mean_pressure;
 mod mesh_ansys;
+mod mesh_comsol;
 mod mesh_dialects;
 mod mesh_dyna;
 mod mesh_files;

@@ -185,6 +185,7 @@ fn formats_are_told_by_what_is_in_the_file() {
     for (name, fragment) in [
         ("plate.stp", "files .stp are in no format that is read"),
         ("plate.dxf", "export the mesh as"),
+        ("plate.rst", "write the archive (CDWRITE,DB: .cdb)"),
         ("plate.pvtu", "give one of these"),
         ("plate.vts", "no list of cells"),
         ("plate.ele", "Triangle"),

@@ -27,6 +27,7 @@ const SCRIPT: &str = concat!(
     include_str!("readers/nastran.py"),
     include_str!("readers/mapdl.py"),
     include_str!("readers/dyna.py"),
+    include_str!("readers/comsol.py"),
     include_str!("foreign.py")
 );
 const INSTEAD: &str = "convert it to Gmsh's format (.msh)";

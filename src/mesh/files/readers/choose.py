@@ -28,6 +28,8 @@ def own_reader(source):
         return read_mapdl
     if re.match(r"(\$.*\n|\s*\n)*\*KEYWORD", head, re.IGNORECASE):
         return read_dyna
+    if head.startswith("# Created by COMSOL"):
+        return read_comsol
     if low.endswith((".node", ".ele")):
         refuse("the files of Triangle (.node, .ele) are not read: export the mesh as Gmsh (.msh), Medit (.mesh) or VTU")
     lines = [line.strip() for line in head.splitlines() if line.strip() and not line.lstrip().startswith("#")]

@@ -164,15 +164,21 @@ def one_piece(data):
 # Formats of VTK that name other files, or hold grids without a list of cells.
 VTK_NAMES_OTHERS, VTK_WITHOUT_CELLS = (".pvd", ".pvtu", ".vtm", ".vtmb"), (".vtp", ".vts", ".vtr", ".vti", ".pvts", ".pvtr", ".pvti", ".pvtp")
 
+# Binary files of programs that also write a format that is read.
+OF_PROGRAMS = {**dict.fromkeys((".mph", ".mphbin"), "export the mesh as text (.mphtxt)"), **dict.fromkeys((".cae", ".odb"), "write the input file (.inp)"),
+               **dict.fromkeys((".db", ".dbb", ".rst", ".rth", ".mechdat", ".wbpj"), "write the archive (CDWRITE,DB: .cdb)"), ".d3plot": "hand in the keyword file (.k)"}
+
 
 def unknown(suffix):
     """What to say of a file whose ending is that of no format that is read."""
+    if suffix in OF_PROGRAMS:
+        return f"files {suffix} are a program's own: {OF_PROGRAMS[suffix]}"
     if suffix in VTK_NAMES_OTHERS:
         return f"files {suffix} only name others: give one of these"
     if suffix in VTK_WITHOUT_CELLS:
         return f"files {suffix} have no list of cells: save it as an unstructured grid in VTU"
     return (f"files {suffix} are in no format that is read" if suffix else "its name has no ending that tells its format") + (
-        ": export the mesh as Abaqus or CalculiX (.inp), Gmsh (.msh), MED, UNV, Exodus, Nastran or VTU")
+        ": export the mesh as Abaqus or CalculiX (.inp), Ansys (.cdb), LS-DYNA (.k), COMSOL (.mphtxt), Gmsh (.msh), MED, UNV, Exodus, Nastran or VTU")
 
 
 def reason_of(source, error):
