@@ -92,6 +92,8 @@ pub(in crate::mesh) struct Content {
     pub names: HashMap<(i32, i32), String>,
     /// Names by the numbers that the file itself has, where `names` has others.
     pub numbers: Option<HashMap<(i32, i32), String>>,
+    /// Stand-ins of tags with more digits than a tag of a scene has.
+    pub long: HashMap<i64, i32>,
     /// Physical tags by dimension and tag of an elementary entity (version 4).
     pub entities: HashMap<(i32, i32), Rc<[i32]>>,
     /// Coordinates by node tag.
@@ -162,7 +164,7 @@ impl Content {
                 raw.quadrilaterals.push([*a, *b, *c, *d]);
             }
             let dimension = element.kind.dimension();
-            if let Some(tag) = element.entity {
+            if let Some(tag) = element.entity.filter(|tag| self.long_tag(*tag).is_none()) {
                 if entity != Some((dimension, tag)) {
                     entity = Some((dimension, tag));
                     sets.entities.push(Entity { dimension, tag, cells: Cells::default() });
@@ -171,7 +173,10 @@ impl Content {
                     last.cells.extend(&cells);
                 }
             }
-            let name = |tag: i32| self.names.get(&(dimension, tag)).cloned().unwrap_or_else(|| tag.to_string());
+            let name = |tag: i32| {
+                let number = || self.long_tag(tag).unwrap_or(i64::from(tag)).to_string();
+                self.names.get(&(dimension, tag)).cloned().unwrap_or_else(number)
+            };
             match &*element.physical {
                 [] => raw.triangles.extend(cells.triangles.iter().map(|t| (*t, String::new()))),
                 [tag] => {
@@ -202,6 +207,18 @@ impl Content {
         let mut used = self.elements.iter().flat_map(|e| &e.nodes).filter_map(|tag| Some(position[*index.get(tag)?]));
         let Some([_, _, first]) = used.next() else { return 0.0 };
         if used.all(|p| (p[2] - first).abs() <= FLAT * size) { first } else { 0.0 }
+    }
+
+    /// The tag itself, or a stand-in that no file has for one with too many digits.
+    pub fn tag(&mut self, tag: i64) -> i32 {
+        let next = i32::MIN.saturating_add(i32::try_from(self.long.len()).unwrap_or(i32::MAX));
+        i32::try_from(tag).unwrap_or_else(|_| *self.long.entry(tag).or_insert(next))
+    }
+
+    /// The tag that this one stands for, if it does.
+    fn long_tag(&self, tag: i32) -> Option<i64> {
+        let long = if tag < 0 { self.long.iter().find(|(_, short)| **short == tag) } else { None };
+        long.map(|(long, _)| *long)
     }
 
     /// How many cells of each kind there are.
@@ -242,9 +259,11 @@ impl Content {
 
     fn sets(&self, index: &HashMap<u64, usize>) -> Sets {
         let known = |tags: &Vec<u64>| tags.iter().filter_map(|tag| index.get(tag).copied()).collect();
+        let numbers = self.numbers.as_ref().unwrap_or(&self.names).iter();
+        let numbers = numbers.filter(|((_, tag), _)| self.long_tag(*tag).is_none());
         let side = |[a, b]: &[u64; 2]| Some([*index.get(a)?, *index.get(b)?]);
         Sets {
-            numbers: self.numbers.as_ref().unwrap_or(&self.names).clone(),
+            numbers: numbers.map(|(key, name)| (*key, name.clone())).collect(),
             kinds: self.kinds(),
             entities: Vec::new(),
             made_for: Vec::new(),

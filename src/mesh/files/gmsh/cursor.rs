@@ -70,6 +70,11 @@ impl<'a> Cursor<'a> {
         Some(decoded(&rest[..length]).trim().to_string())
     }
 
+    /// Goes back to the beginning of the last line.
+    pub fn back(&mut self) {
+        self.position = self.mark;
+    }
+
     /// The next line that is not empty.
     pub fn full_line(&mut self) -> Option<String> {
         loop {
@@ -145,6 +150,14 @@ impl<'a> Cursor<'a> {
         match self.encoding {
             Encoding::Text => self.parsed("whole number"),
             _ => Ok(i32::from_le_bytes(self.raw()?)),
+        }
+    }
+
+    /// The tag of an entity or a physical group, which other programs write in text with more digits than Gmsh has.
+    pub fn entity(&mut self) -> Result<i64, MeshError> {
+        match self.encoding {
+            Encoding::Text => self.parsed("whole number"),
+            _ => Ok(i64::from(self.int()?)),
         }
     }
 

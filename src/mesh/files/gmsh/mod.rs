@@ -1,16 +1,19 @@
-//! Native reader of Gmsh's MSH 2.0 to 2.2, 4.0 and 4.1, text and binary.
+//! Native reader of Gmsh's MSH 1, 2.0 to 2.2, 4.0 and 4.1, text and, but for the first, binary.
 //!
 //! A physical surface is a body and a physical curve a boundary, by name, or by number where there is no name.
 
 mod cursor;
+mod partitions;
 #[cfg(test)]
 mod tests;
+mod v1;
 mod v2;
 mod v4;
 
 use std::path::Path;
 
 use cursor::{Cursor, Encoding, shortened};
+use partitions::Partitions;
 
 use super::content::Content;
 use super::{abaqus, encoding};
@@ -36,6 +39,8 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshErro
     let mut cursor = Cursor::new(bytes, file);
     let mut content = Content::default();
     let version = header(&mut cursor)?;
+    let end = if version == Version::V1 { "$END" } else { "$End" };
+    let mut partitions = Partitions::default();
     let (mut nodes, mut elements) = (false, false);
     while let Some(line) = cursor.full_line() {
         let Some(section) = line.strip_prefix('$') else {
@@ -46,30 +51,33 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshErro
         match (section, version) {
             ("PhysicalNames", _) => cursor.in_text(|cursor| physical_names(cursor, &mut content))?,
             ("Entities", Version::V4(minor)) => v4::entities(&mut cursor, &mut content, minor)?,
-            ("PartitionedEntities", Version::V4(_)) => {
-                return Err(cursor.fault("the mesh is partitioned", "save it without partitions"));
+            ("PartitionedEntities", Version::V4(minor)) => {
+                partitions.extend(partitions::entities(&mut cursor, &mut content, minor)?);
             }
-            ("Nodes" | "Elements", _) => {
-                let repeated = std::mem::replace(if section == "Nodes" { &mut nodes } else { &mut elements }, true);
+            ("NOD" | "ELM", Version::V1) | ("Nodes" | "Elements", Version::V2 | Version::V4(_)) => {
+                let of_nodes = matches!(section, "NOD" | "Nodes");
+                let repeated = std::mem::replace(if of_nodes { &mut nodes } else { &mut elements }, true);
                 if repeated {
                     return Err(cursor.fault("the section is there twice", "keep one of them"));
                 }
                 match (section, version) {
-                    ("Nodes", Version::V2) => v2::nodes(&mut cursor, &mut content)?,
+                    ("ELM", _) => v1::elements(&mut cursor, &mut content)?,
+                    ("NOD", _) | ("Nodes", Version::V1 | Version::V2) => v2::nodes(&mut cursor, &mut content)?,
                     ("Nodes", Version::V4(minor)) => v4::nodes(&mut cursor, &mut content, minor)?,
-                    (_, Version::V2) => v2::elements(&mut cursor, &mut content)?,
-                    (_, Version::V4(minor)) => v4::elements(&mut cursor, &mut content, minor)?,
+                    (_, Version::V1 | Version::V2) => v2::elements(&mut cursor, &mut content)?,
+                    (_, Version::V4(minor)) => v4::elements(&mut cursor, &mut content, minor, &mut partitions)?,
                 }
             }
             // $Periodic, $NodeData, comments and the like.
             _ => {
-                cursor.skip_past(&format!("$End{section}"))?;
+                cursor.skip_past(&format!("{end}{section}"))?;
                 continue;
             }
         }
-        cursor.expect(&format!("$End{section}"))?;
+        cursor.expect(&format!("{end}{section}"))?;
     }
-    for (found, name) in [(nodes, "$Nodes"), (elements, "$Elements")] {
+    let sections = if version == Version::V1 { ["$NOD", "$ELM"] } else { ["$Nodes", "$Elements"] };
+    for (found, name) in [nodes, elements].into_iter().zip(sections) {
         if !found {
             return Err(MeshError::file(
                 file,
@@ -78,11 +86,13 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<(RawMesh, Vec<Note>), MeshErro
             ));
         }
     }
+    partitions::whole(&partitions, file)?;
     content.into_raw(file)
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Version {
+    V1,
     V2,
     V4(Minor),
 }
@@ -94,13 +104,16 @@ enum Minor {
     One,
 }
 
-/// Reads up to `$EndMeshFormat`; sets the encoding.
+/// Reads up to `$EndMeshFormat`, which version 1 does not have; sets the encoding.
 fn header(cursor: &mut Cursor) -> Result<Version, MeshError> {
     loop {
         match cursor.full_line().as_deref() {
             Some("$MeshFormat") => break,
             Some("$Comments") => cursor.skip_past("$EndComments")?,
-            Some("$NOD") => return Err(cursor.fault("this is MSH version 1", SAVE_AGAIN)),
+            Some("$NOD") => {
+                cursor.back();
+                return Ok(Version::V1);
+            }
             Some(other) => {
                 let what = format!("found '{}' where $MeshFormat should be: this is no Gmsh file", shortened(other));
                 return Err(cursor.fault(what, SAVE_AGAIN));
@@ -150,14 +163,15 @@ fn physical_names(cursor: &mut Cursor, content: &mut Content) -> Result<(), Mesh
     for _ in 0..count {
         let line = cursor.full_line().unwrap_or_default();
         let mut words = line.splitn(3, char::is_whitespace);
-        let mut number = || words.next().and_then(|w| w.parse::<i32>().ok());
+        let mut number = || words.next().and_then(|w| w.parse::<i64>().ok());
         let (dimension, tag) = (number(), number());
         let name = words.next().and_then(|w| w.trim().strip_prefix('"')?.strip_suffix('"'));
         let (Some(dimension), Some(tag), Some(name)) = (dimension, tag, name) else {
             let what = format!("found '{}' where dimension, number and \"name\" should be", shortened(&line));
             return Err(cursor.fault(what, "the file is truncated or damaged: write it again"));
         };
-        content.names.insert((dimension, tag), name.to_string());
+        let tag = content.tag(tag);
+        content.names.insert((i32::try_from(dimension).unwrap_or_default(), tag), name.to_string());
     }
     Ok(())
 }

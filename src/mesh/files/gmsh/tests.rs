@@ -149,7 +149,7 @@ fn files_that_are_refused() {
     };
     refuse(b"", &["empty", "save it as MSH 4.1"]);
     refuse(b" \n\n", &["empty"]);
-    refuse(b"$NOD\n1\n1 0 0 0\n$ENDNOD\n", &["line 1", "MSH version 1", "save it as"]);
+    refuse(b"$NOD\n1\n1 0 0 0\n$ENDNOD\n", &["the section $ELM is missing", "truncated"]);
     refuse(&edit(&v4, "4.1 0 8", "5 0 8"), &["$MeshFormat, line 2", "MSH version 5;", "save it as"]);
     refuse(&edit(&v4, "4.1 0 8", "3.0 0 8"), &["MSH version 3.0"]);
     refuse(&edit(&v4, "4.1 0 8", "4.0 0 8"), &["$Entities, line", "write it again"]);
@@ -239,4 +239,66 @@ proptest! {
             prop_assert!(highest.is_none_or(|v| *v < raw.points.len()));
         }
     }
+}
+
+/// The unit square beside another, a triangle in each half, by version 1: the number of nodes stands in the rows, and names are numbers.
+#[test]
+fn the_oldest_version_has_numbers_for_names() {
+    let rows =
+        "1 1 21 4 2 1 4\n2 15 30 1 1 1\n3 3 11 1 4 1 2 5 4\n4 2 -12 2 3 2 3 6\n5 9 12 2 6 2 6 5 7 8 9\n6 2 0 3 3 2 5 1";
+    let nodes = "1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n7 1.5 0.5 0\n8 1.5 1 0\n9 1 0.5 0";
+    let text = format!("$NOD\n9\n{nodes}\n$ENDNOD\n$ELM\n6\n{rows}\n$ENDELM\n");
+    let (raw, _) = parse(text.as_bytes(), Path::new("old.msh")).expect("a mesh");
+    let names: Vec<&str> = raw.triangles.iter().map(|(_, name)| name.as_str()).collect();
+    assert_eq!(names, ["11", "11", "12", "12", ""]);
+    assert_eq!(raw.segments, [([0, 3], "21".to_string())]);
+    assert!(raw.sets.entities.iter().any(|entity| (entity.dimension, entity.tag) == (2, 3)));
+    for (from, to, fragments) in [
+        ("4 2 -12 2 3 2 3 6", "4 2 -12 2 4 2 3 6 5", ["$ELM, line 18", "type 2, which has 3 nodes, and has 4"]),
+        ("$ENDELM\n", "", ["$ELM", "the file ends here"]),
+        ("\n6 2 0 3 3 2 5 1", "", ["$ELM", "'$ENDELM' where a count should be"]),
+        ("2 1 0 0\n", "2 1 q 0\n", ["$NOD, line 4", "'q'"]),
+        ("4 2 -12", "4 77 -12", ["element type 77", "unknown"]),
+        ("$NOD\n", "$PARA\n1\n$ENDPARA\n$NOD\n", ["this is no Gmsh file", "$PARA"]),
+    ] {
+        refuse(text.replace(from, to).as_bytes(), &fragments);
+    }
+    refuse(&text.as_bytes()[..text.find("$ELM").expect("elements")], &["the section $ELM is missing"]);
+}
+
+/// Two triangles of one surface in two partitions, and the line between these.
+fn partitioned(parts: &str, elements: &str) -> String {
+    format!(
+        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 21 \"wall\"\n2 3000000000 \"plate\"\n$EndPhysicalNames\n\
+         $Entities\n0 1 1 0\n4 0 0 0 0 1 0 1 21 0\n4000000000 0 0 0 1 1 0 1 3000000000 0\n$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n{parts}$EndPartitionedEntities\n\
+         $Nodes\n1 4 1 4\n2 7 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n$Elements\n{elements}$EndElements\n$GhostElements\n1\n1 1 1 2\n$EndGhostElements\n"
+    )
+}
+
+#[test]
+fn parts_of_an_entity_are_in_the_groups_of_their_parent() {
+    let parts = "0 2 2 0\n6 1 4 1 1 0 0 0 0 1 0 0 0\n8 2 4000000000 2 1 2 0 0 0 1 1 0 0 0\n7 2 4000000000 1 1 0 0 0 1 1 0 0 0\n8 2 4000000000 1 2 0 0 0 1 1 0 0 0\n";
+    let elements = "4 4 1 4\n1 6 1 1\n1 4 1\n1 8 1 1\n2 1 3\n2 7 2 1\n3 1 2 3\n2 8 2 1\n4 1 3 4\n";
+    let text = partitioned(parts, elements);
+    let (raw, _) = parse(text.as_bytes(), Path::new("parts.msh")).expect("a mesh");
+    assert!(raw.triangles.iter().all(|(_, name)| name == "plate") && raw.triangles.len() == 2, "{:?}", raw.triangles);
+    assert_eq!(raw.segments, [([3, 0], "wall".to_string())]);
+    // Tags with ten digits are names, and no tags of a scene.
+    let tags: Vec<(i32, i32)> = raw.sets.entities.iter().map(|entity| (entity.dimension, entity.tag)).collect();
+    assert_eq!(tags, [(1, 4)]);
+    assert_eq!(raw.sets.numbers.keys().collect::<Vec<_>>(), [&(1, 21)]);
+    let nameless = text.replace("2\n1 21 \"wall\"\n2 3000000000 \"plate\"", "1\n1 21 \"wall\"");
+    let (raw, _) = parse(nameless.as_bytes(), Path::new("parts.msh")).expect("a mesh");
+    assert!(raw.triangles.iter().all(|(_, name)| name == "3000000000"), "{:?}", raw.triangles);
+    // A file for each partition has the others' entities without their elements.
+    let split = partitioned(parts, "3 3 1 4\n1 6 1 1\n1 4 1\n1 8 1 1\n2 1 3\n2 7 2 1\n3 1 2 3\n");
+    refuse(split.as_bytes(), &["no elements of 1 of the 2 parts", "PartitionSplitMeshFiles"]);
+    refuse(
+        text.replace("\n8 2 4000000000 1 2", "\n7 2 4000000000 1 2").as_bytes(),
+        &["$PartitionedEntities", "the part 7 of dimension 2"],
+    );
+    refuse(
+        text.replace("0 2 2 0\n6 1", "0 2 3 0\n6 1").as_bytes(),
+        &["$PartitionedEntities, line 23", "'$EndPartitionedEntities'"],
+    );
 }
