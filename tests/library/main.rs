@@ -53,6 +53,7 @@ mod mesh_files;
 mod mesh_formats;
 mod mesh_inventory;
 mod mesh_misread;
+mod mesh_packed;
 mod mesh_parts;
 mod mesh_selection;
 mod methods_on_cases;

@@ -1,6 +1,13 @@
-//! The encoding of text files: ASCII, UTF-8 with a byte order mark or without, or Latin-1.
+//! The encoding of files: packed with gzip or not, and text in ASCII, in UTF-8 with a byte order mark or without, or in Latin-1.
 
 use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+/// The name of a file before it was packed: without the ending `.gz`.
+pub(super) fn unpacked_name(file: &Path) -> PathBuf {
+    let packed = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+    if packed { file.with_extension("") } else { file.to_path_buf() }
+}
 
 /// The bytes of a text file without the byte order mark of UTF-8.
 ///

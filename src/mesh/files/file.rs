@@ -1,10 +1,13 @@
 //! Opening a mesh file with the reader that its name asks for.
 
 use std::borrow::Cow;
+use std::io::Read;
 use std::path::Path;
 use std::time::Duration;
 
-use super::{abaqus, foreign, gmsh};
+use flate2::read::MultiGzDecoder;
+
+use super::{abaqus, encoding, foreign, gmsh};
 use crate::mesh::{MeshError, RawMesh};
 use crate::scene::Note;
 
@@ -25,10 +28,8 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
     if !kind.is_file() {
         return Err(MeshError::file(file, "this is not a regular file", "write the mesh into a file"));
     }
-    let bytes = || {
-        std::fs::read(file).map_err(|e| MeshError::file(file, format!("cannot be read: {e}"), "check its permissions"))
-    };
-    match file.extension().map(|extension| extension.to_ascii_lowercase()) {
+    let bytes = || content(file).map_err(|(what, remedy)| MeshError::file(file, what, remedy));
+    match encoding::unpacked_name(file).extension().map(|extension| extension.to_ascii_lowercase()) {
         Some(extension) if extension == "msh" => match bytes()? {
             text if others(&text) => foreign::read(file, limit),
             text => gmsh::parse(&text, file),
@@ -39,6 +40,19 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
         },
         _ => foreign::read(file, limit),
     }
+}
+
+/// The bytes of a file, unpacked where it is packed with gzip.
+fn content(file: &Path) -> Result<Vec<u8>, (String, &'static str)> {
+    let bytes = std::fs::read(file).map_err(|e| (format!("cannot be read: {e}"), "check its permissions"))?;
+    if encoding::unpacked_name(file) == file {
+        return Ok(bytes);
+    }
+    let mut unpacked = Vec::new();
+    MultiGzDecoder::new(&*bytes).read_to_end(&mut unpacked).map_err(|e| {
+        (format!("cannot be unpacked with gzip: {e}"), "pack it again, or give the file that was packed")
+    })?;
+    Ok(unpacked)
 }
 
 /// True if a `.msh` file is not Gmsh's: FreeFEM's begins with three counts, GiD's with `MESH`, GetFEM's with a comment, and Fluent's with a bracket.

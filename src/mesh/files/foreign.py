@@ -153,7 +153,8 @@ def checked(found):
 
 
 def main():
-    source, target = sys.argv[1:]
+    packed, target = sys.argv[1:]
+    source = unpacked(packed, target)
     reader = own_reader(source)
     if reader is not None:
         found = read_own(source, reader).mesh()

@@ -16,11 +16,17 @@ const FULL: f64 = 0.8;
 /// Rounding relative to their size that a format leaves in its numbers, however few there are: results of CalculiX have six or
 /// seven digits.
 pub(super) fn of_format(file: &Path) -> f64 {
-    match file.extension().map(|end| end.to_ascii_lowercase()) {
-        Some(end) if end == "frd" => 0.5e-5,
-        Some(end) if end == "dat" => 0.5e-6,
+    match ending(file).as_str() {
+        "frd" => 0.5e-5,
+        "dat" => 0.5e-6,
         _ => 0.0,
     }
+}
+
+/// What tells the format of a file: the end of its name, without that of gzip.
+pub(super) fn ending(file: &Path) -> String {
+    let name = file.to_string_lossy().to_ascii_lowercase();
+    name.strip_suffix(".gz").unwrap_or(&name).rsplit('.').next().unwrap_or_default().to_string()
 }
 
 /// Rounding relative to their size that `values` carry, where a file keeps a few decimal digits of them, or single precision.
@@ -59,6 +65,7 @@ mod tests {
     fn results_of_calculix_have_the_digits_of_their_format() {
         assert_eq!(of_format(Path::new("out/job.FRD")), 0.5e-5);
         assert_eq!(of_format(Path::new("job.dat")), 0.5e-6);
+        assert_eq!(of_format(Path::new("job.frd.gz")), 0.5e-5);
         assert_eq!(of_format(Path::new("frd.vtu")), 0.0);
     }
 

@@ -104,8 +104,7 @@ impl ForeignField {
 
     /// True if a file is a result of CalculiX.
     pub fn is_of_calculix(&self) -> bool {
-        let ending = |name: &str| Path::new(name).extension().map(|ending| ending.to_ascii_lowercase());
-        self.files.iter().any(|(name, _)| ending(name).is_some_and(|ending| ending == "frd" || ending == "dat"))
+        self.files.iter().any(|(name, _)| ["frd", "dat"].contains(&digits::ending(Path::new(name)).as_str()))
     }
 
     /// SHA-256 of the file.

@@ -12,7 +12,8 @@ except ImportError as error:
     print(error, file=sys.stderr)
     sys.exit(44)
 
-source, target = sys.argv[1:]
+packed, target = sys.argv[1:]
+source = unpacked(packed, target)
 
 
 def missing(error):

@@ -1,7 +1,7 @@
 """Which reader a file asks for."""
 
 READERS = {".unv": read_unv, ".med": read_med, ".rmed": read_med, ".mmed": read_med, **dict.fromkeys((".e", ".exo", ".ex2", ".exii", ".exoii", ".exodus", ".g", ".gen"), read_exodus),
-           ".frd": read_frd, ".vol": read_ngsolve, ".vol.gz": read_ngsolve, ".json": read_skfem, ".su2": read_su2}
+           ".frd": read_frd, ".vol": read_ngsolve, ".json": read_skfem, ".su2": read_su2}
 
 
 def own_reader(source):

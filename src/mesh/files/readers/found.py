@@ -5,8 +5,10 @@ import gzip
 import math
 import os
 import re
+import shutil
 import sys
 import tempfile
+import zlib
 
 # Cells by shape and number of nodes, in Gmsh's order: corners, middles of sides, centre.
 PLANE = {("line", 2), ("line", 3), ("triangle", 3), ("triangle", 6), ("quadrilateral", 4), ("quadrilateral", 8), ("quadrilateral", 9)}
@@ -202,10 +204,22 @@ def columns(line, widths):
     return found
 
 
+def unpacked(source, target):
+    """The file, or an unpacked copy in the folder of `target` where it is packed with gzip."""
+    if not source.lower().endswith(".gz"):
+        return source
+    copy = os.path.join(os.path.dirname(target), os.path.basename(source)[:-3])
+    try:
+        with gzip.open(source, "rb") as file, open(copy, "wb") as out:
+            shutil.copyfileobj(file, out)
+    except (OSError, EOFError, zlib.error) as error:
+        refuse(f"it cannot be unpacked with gzip ({error}): pack it again, or give the file that was packed")
+    return copy
+
+
 def content_of(source):
-    """The bytes of a file, which may be compressed, without the byte order mark of UTF-8."""
-    opened = gzip.open if source.lower().endswith(".gz") else open
-    with opened(source, "rb") as file:
+    """The bytes of a file without the byte order mark of UTF-8."""
+    with open(source, "rb") as file:
         data = file.read()
     if data.startswith(MARKS[1:]):
         raise Unreadable("its text is encoded in UTF-16: save it in UTF-8 or ASCII")
@@ -213,7 +227,7 @@ def content_of(source):
 
 
 def lines_of(source):
-    """The lines of a text file, which may be compressed, in UTF-8 or else in Latin-1."""
+    """The lines of a text file in UTF-8, or else in Latin-1."""
     data = content_of(source)
     try:
         text = data.decode("utf-8")

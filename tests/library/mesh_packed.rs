@@ -1,0 +1,56 @@
+//! Files packed with gzip.
+
+use std::io::Write;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+
+use crate::mesh_formats::{Folder, LIMIT, check, rows, unv, unv_groups};
+use hypercircle::mesh::inventory::Inventory;
+
+fn packed(text: &str) -> Vec<u8> {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::default());
+    packed.write_all(text.as_bytes()).expect("room");
+    packed.finish().expect("room")
+}
+
+fn deck(nodes: &str) -> String {
+    format!(
+        "*NODE\n{nodes}*ELEMENT, TYPE=CPE4, ELSET=plate\n1, 1, 2, 5, 4\n*ELEMENT, TYPE=CPE3, ELSET=plate\n2, 2, 3, 6\n3, 2, 6, 5\n\
+         *NSET, NSET=wall\n1, 4\n*NSET, NSET=load\n3, 6\n"
+    )
+}
+
+fn flat() -> String {
+    deck(&rows(|n, [x, y]| format!("{n}, {x}, {y}\n")))
+}
+
+fn gmsh() -> String {
+    format!(
+        "$NOD\n6\n{}$ENDNOD\n$ELM\n5\n1 3 7 1 4 1 2 5 4\n2 2 7 2 3 2 3 6\n3 2 7 2 3 2 6 5\n4 1 8 3 2 4 1\n5 1 9 4 2 3 6\n$ENDELM\n",
+        rows(|n, [x, y]| format!("{n} {x} {y} 0\n"))
+    )
+}
+
+#[test]
+fn packed_files_are_read_as_what_was_packed() {
+    let folder = Folder::new();
+    check(&folder.write("plate.inp.gz", packed(&flat())), &["plate"], ["wall", "load"]);
+    check(&folder.write("plate.msh.gz", packed(&gmsh())), &["7"], ["8", "9"]);
+    check(&folder.write("plate.unv.GZ", packed(&unv(&unv_groups("2467")))), &["PLATE"], ["wall side", "LOAD"]);
+    let freefem = format!(
+        "6 4 6\n{}1 2 5 1\n1 5 4 1\n2 3 6 1\n2 6 5 1\n1 2 1\n2 3 1\n3 6 2\n6 5 3\n5 4 3\n4 1 4\n",
+        rows(|_, [x, y]| format!("{x} {y} 1\n"))
+    );
+    check(&folder.write("Th.msh.gz", packed(&freefem)), &["1"], ["4", "2"]);
+    let whole = packed(&unv(""));
+    for (name, bytes) in [
+        ("words.unv.gz", b"some words".to_vec()),
+        ("words.msh.gz", b"some words".to_vec()),
+        ("cut.unv.gz", whole[..whole.len() / 2].to_vec()),
+        ("cut.inp.gz", whole[..whole.len() / 2].to_vec()),
+    ] {
+        let error = Inventory::read(&folder.write(name, bytes), LIMIT).expect_err("no mesh").to_string();
+        assert!(error.contains(name) && error.contains("cannot be unpacked with gzip"), "{error}");
+    }
+}
