@@ -1,4 +1,4 @@
-//! Files packed with gzip.
+//! Files packed with gzip, and files in other planes than that of x and y.
 
 use std::io::Write;
 
@@ -53,4 +53,21 @@ fn packed_files_are_read_as_what_was_packed() {
         let error = Inventory::read(&folder.write(name, bytes), LIMIT).expect_err("no mesh").to_string();
         assert!(error.contains(name) && error.contains("cannot be unpacked with gzip"), "{error}");
     }
+}
+
+#[test]
+fn meshes_in_other_planes_are_turned_into_that_of_x_and_y() {
+    let folder = Folder::new();
+    for (told, nodes) in [
+        ("the plane y = 0.5: x and z of the file", rows(|n, [x, y]| format!("{n}, {x}, 0.5, {y}\n"))),
+        ("the plane x = -3: y and z of the file", rows(|n, [x, y]| format!("{n}, -3.0, {x}, {y}\n"))),
+    ] {
+        let path = folder.write("plate.inp", deck(&nodes));
+        check(&path, &["plate"], ["wall", "load"]);
+        let notes = Inventory::read(&path, LIMIT).expect("a mesh").notes;
+        assert!(notes.iter().any(|note| note.text.contains(told)), "{notes:?}");
+    }
+    let aslant = deck(&rows(|n, [x, y]| format!("{n}, {x}, {y}, {y}\n")));
+    let error = Inventory::read(&folder.write("aslant.inp", aslant), LIMIT).expect_err("no plane").to_string();
+    assert!(error.contains("outside the plane"), "{error}");
 }

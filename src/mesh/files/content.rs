@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 use std::rc::Rc;
 
+use super::plane::Plane;
 use crate::mesh::cells::quadrilateral;
 use crate::mesh::cells::solids::Solids;
 use crate::mesh::select::{Cells, Entity, Sets};
@@ -12,9 +13,6 @@ use crate::scene::Note;
 
 /// Deviation of a side from its chord, in parts of its length, that counts as round-off.
 const ROUND_OFF: f64 = 1e-9;
-
-/// Deviation from the plane, in parts of the coordinates, that is none: files have seven digits, and what it changes is of second order.
-const FLAT: f64 = 1e-6;
 
 /// Half of the last of seven digits, which many formats have, in parts of a coordinate, and the largest part of a side that they may put a
 /// node between its corners beside it: the corners are where it is by the same rounding.
@@ -127,14 +125,14 @@ pub(in crate::mesh) fn element_type(number: i32) -> Result<(Option<Kind>, usize)
 
 impl Content {
     /// Triangles and named segments in the plane; quadrilaterals are cut in two, and the chord of a curved side stands for it.
-    pub fn into_raw(self, file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
+    pub fn into_raw(mut self, file: &Path) -> Result<(RawMesh, Vec<Note>), MeshError> {
         self.no_solids(file)?;
+        let turned = self.laid_down();
         let mut order: Vec<u64> = self.nodes.keys().copied().collect();
         order.sort_unstable();
         let index: HashMap<u64, usize> = order.iter().enumerate().map(|(i, tag)| (*tag, i)).collect();
         let position: Vec<[f64; 3]> = order.iter().map(|tag| self.nodes[tag]).collect();
-        let size = position.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let plane = Plane { height: self.height(&index, &position, size), size };
+        let plane = Plane::of(&self.elements, &index, &position);
         let mut raw = RawMesh { points: position.iter().map(|p| [p[0], p[1]]).collect(), ..RawMesh::default() };
         let mut counts = Counts::default();
         let mut sets = self.sets(&index);
@@ -151,7 +149,7 @@ impl Content {
                 nodes.push(node);
             }
             if !plane.holds(&nodes, &position) {
-                return Err(self.out_of_plane(file, &index, &position, plane));
+                return Err(plane.left(&self.elements, file, &index, &position));
             }
             let corners = element.kind.corners();
             if nodes.len() > corners {
@@ -199,14 +197,7 @@ impl Content {
             }
         }
         raw.sets = sets;
-        Ok((raw, counts.notes()))
-    }
-
-    /// The z of the plane in which the nodes of all cells lie, or zero where they lie in none.
-    fn height(&self, index: &HashMap<u64, usize>, position: &[[f64; 3]], size: f64) -> f64 {
-        let mut used = self.elements.iter().flat_map(|e| &e.nodes).filter_map(|tag| Some(position[*index.get(tag)?]));
-        let Some([_, _, first]) = used.next() else { return 0.0 };
-        if used.all(|p| (p[2] - first).abs() <= FLAT * size) { first } else { 0.0 }
+        Ok((raw, turned.into_iter().chain(counts.notes()).collect()))
     }
 
     /// The tag itself, or a stand-in that no file has for one with too many digits.
@@ -228,33 +219,6 @@ impl Content {
             *kinds.entry(element.kind.told(element.nodes.len())).or_default() += 1;
         }
         kinds
-    }
-
-    /// Says which elements have nodes outside the plane, how many they are, and how far it goes.
-    fn out_of_plane(&self, file: &Path, index: &HashMap<u64, usize>, position: &[[f64; 3]], plane: Plane) -> MeshError {
-        let height = plane.height;
-        let (mut count, mut first, mut low, mut high) = (0_usize, None, height, height);
-        for element in &self.elements {
-            let nodes: Vec<usize> = element.nodes.iter().filter_map(|tag| index.get(tag).copied()).collect();
-            let heights = nodes.iter().map(|&n| position[n][2]);
-            (low, high) = heights.fold((low, high), |(low, high), z| (low.min(z), high.max(z)));
-            if plane.holds(&nodes, position) {
-                continue;
-            }
-            count += 1;
-            let farthest = |a: &&usize, b: &&usize| {
-                (position[**a][2] - height).abs().total_cmp(&(position[**b][2] - height).abs())
-            };
-            let place = nodes.iter().max_by(farthest).map_or([0.0; 3], |&n| position[n]);
-            first.get_or_insert((element.tag, place));
-        }
-        let (tag, [x, y, z]) = first.unwrap_or_default();
-        let what = format!(
-            "element {tag} has a node at ({x}, {y}, {z}), outside the plane z = {height}; so have {count} of {} elements, and z \
-             goes from {low} to {high}",
-            self.elements.len()
-        );
-        MeshError::file(file, what, "put the geometry into one plane, z = 0")
     }
 
     fn sets(&self, index: &HashMap<u64, usize>) -> Sets {
@@ -375,20 +339,5 @@ impl Counts {
             notes.push(note(text, true));
         }
         notes
-    }
-}
-
-/// The plane of a mesh.
-#[derive(Clone, Copy)]
-struct Plane {
-    height: f64,
-    /// The largest coordinate of the file.
-    size: f64,
-}
-
-impl Plane {
-    /// True if these nodes lie in it.
-    fn holds(self, nodes: &[usize], position: &[[f64; 3]]) -> bool {
-        nodes.iter().all(|&n| (position[n][2] - self.height).abs() <= FLAT * self.size)
     }
 }

@@ -119,6 +119,7 @@ impl ForeignField {
         if content.cells.is_empty() {
             return Err(fault("there is no triangle and no quadrilateral in it".into(), INSTEAD));
         }
+        lay_down(&mut content);
         let (name, data) = choose(&content.fields, name).map_err(|(what, remedy)| fault(what, remedy))?;
         let rows = data.values.as_deref().unwrap_or_default();
         if content.own && rows.len() < content.points.len() {
@@ -184,6 +185,24 @@ fn plane(numbers: &[Option<f64>]) -> Option<[f64; 2]> {
     all.and_then(|all| all.get(..2)?.try_into().ok())
 }
 
+/// Turns a field in a plane of constant y or x into one of x and y, as the mesh of such a file is: x, z become x, y, or y, z do.
+fn lay_down(content: &mut Content) {
+    let tolerance = if content.single { f64::from(f32::EPSILON) } else { FLAT };
+    let size = content.points.iter().flatten().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let flat = [0, 1, 2].map(|c| {
+        let coordinates = || content.points.iter().filter_map(|p| p.get(c).copied().flatten());
+        let (low, high) = coordinates().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        high - low <= tolerance * size
+    });
+    let turn: fn(&mut Vec<Option<f64>>) = match flat {
+        [false, true, false] => |row| row.swap(1, 2),
+        [true, false, false] => |row| row.rotate_left(1),
+        _ => return,
+    };
+    let rows = content.fields.values_mut().filter_map(|data| data.values.as_mut()).flatten();
+    content.points.iter_mut().chain(rows).filter(|row| row.len() == 3).for_each(turn);
+}
+
 type Chosen<'a> = (&'a str, &'a Data);
 
 /// The point data that is the displacement.
@@ -219,6 +238,29 @@ fn choose<'a>(fields: &'a BTreeMap<String, Data>, wanted: Option<&str>) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The same field in the plane of x and y, of x and z, and of y and z.
+    #[test]
+    fn fields_in_other_planes_are_laid_down() {
+        let placed = |axes: [usize; 2]| {
+            let row = |[a, b]: [f64; 2], across: f64| {
+                let mut row = [across; 3];
+                (row[axes[0]], row[axes[1]]) = (a, b);
+                format!("[{:?}, {:?}, {:?}]", row[0], row[1], row[2])
+            };
+            let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]].map(|p| row(p, 0.5)).join(", ");
+            let values = [[0.0, 0.25], [0.5, 0.0], [0.125, -1.0]].map(|v| row(v, 0.0)).join(", ");
+            let text = format!(
+                r#"{{"points": [{points}], "single": false, "cells": [[0, 1, 2]], "others": [], "fields": {{"u": {{"values": [{values}], "single": false}}}}}}"#
+            );
+            ForeignField::parse(text.as_bytes(), Path::new("f.vtu"), String::new(), None).expect("a field")
+        };
+        let flat = placed([0, 1]);
+        for axes in [[0, 2], [1, 2]] {
+            let turned = placed(axes);
+            assert_eq!((&turned.points, &turned.values), (&flat.points, &flat.values), "{axes:?}");
+        }
+    }
 
     fn named(names: &[(&str, bool)]) -> BTreeMap<String, Data> {
         let data = |vector: bool| Data { values: vector.then(Vec::new), single: false };
