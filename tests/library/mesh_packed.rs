@@ -1,12 +1,14 @@
-//! Files packed with gzip, and files in other planes than that of x and y.
+//! Files packed with gzip, files in other planes than that of x and y, and displacements in arrays of their own.
 
 use std::io::Write;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
-use crate::mesh_formats::{Folder, LIMIT, check, rows, unv, unv_groups};
+use crate::mesh_formats::{Folder, LIMIT, POINTS, check, rows, scene, unv, unv_groups, vtu};
 use hypercircle::mesh::inventory::Inventory;
+use hypercircle::problem::Problem;
+use hypercircle::study::ForeignField;
 
 fn packed(text: &str) -> Vec<u8> {
     let mut packed = GzEncoder::new(Vec::new(), Compression::default());
@@ -70,4 +72,45 @@ fn meshes_in_other_planes_are_turned_into_that_of_x_and_y() {
     let aslant = deck(&rows(|n, [x, y]| format!("{n}, {x}, {y}, {y}\n")));
     let error = Inventory::read(&folder.write("aslant.inp", aslant), LIMIT).expect_err("no plane").to_string();
     assert!(error.contains("outside the plane"), "{error}");
+}
+
+/// u = (x y, −x), whole and in two arrays by the names that programs give these.
+#[test]
+fn displacements_may_be_two_arrays() {
+    let folder = Folder::new();
+    let problem = Problem::load(scene(folder.write("plate.inp", flat()), &["plate"], ["wall", "load"])).expect("fits");
+    let at = |[x, y]: [f64; 2]| [x * y, -x];
+    let array = |name: &str, components: &[usize]| {
+        let numbers: String =
+            POINTS.iter().flat_map(|p| components.iter().map(|c| format!("{} ", at(*p)[*c]))).collect();
+        format!(
+            "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"{}\" format=\"ascii\">\n{numbers}\n</DataArray>\n",
+            components.len()
+        )
+    };
+    let file = |arrays: &str| vtu("").replace("<CellData>", &format!("<PointData>{arrays}</PointData>\n<CellData>"));
+    let read = |arrays: String, field: Option<&str>| {
+        let path = folder.write("field.vtu", file(&arrays));
+        ForeignField::read(&path, field, LIMIT).map_err(|e| e.to_string())
+    };
+    let displaced = |arrays: String, field| {
+        read(arrays, field).expect("a field").candidate(&problem, 0.0).expect("on the mesh").vertex
+    };
+    let whole = displaced(array("displacement", &[0, 1]), None);
+    assert!(!whole.is_empty());
+    for [x, y] in
+        [["disp_x", "disp_y"], ["ux", "uy"], ["u_x", "u_y"], ["Ux", "Uy"], ["displacement_x", "displacement_y"]]
+    {
+        // Their order says nothing, and other arrays are others.
+        let arrays = array(y, &[1]) + &array("flux_x", &[1]) + &array(x, &[0]) + &array("p", &[0]);
+        assert_eq!(displaced(arrays, None), whole, "{x}");
+    }
+    assert_eq!(displaced(array("ux", &[0]) + &array("uy", &[1]) + &array("v", &[1, 0]), Some("u")), whole);
+    let alone = read(array("ux", &[0]) + &array("vy", &[1]), None).expect_err("half a field");
+    assert!(alone.contains("no vector field on points"), "{alone}");
+    let two = array("ux", &[0]) + &array("uy", &[1]);
+    let doubt = read(two.clone() + &array("disp_x", &[0]) + &array("disp_y", &[1]), None).expect_err("two fields");
+    assert!(doubt.contains("several fields may be the displacement: disp, u"), "{doubt}");
+    let doubt = read(two + &array("u_x", &[1]), None).expect_err("two first components");
+    assert!(doubt.contains("several arrays may be the x component of 'u': ux, uy, u_x"), "{doubt}");
 }

@@ -43,7 +43,7 @@ pub struct Args {
     /// Values without a field.
     #[command(flatten)]
     pub values: ValueOptions,
-    /// Name of the point data that is the displacement, where it is not displacement, u or disp
+    /// Name of the point data that is the displacement, where it is not displacement, u or disp, nor two arrays such as ux and uy
     #[arg(long, value_name = "NAME", requires = "displacement")]
     pub field: Option<String>,
     /// Claim that the field is the discrete solution of a displacement method on this mesh, and hold it to that

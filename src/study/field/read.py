@@ -58,6 +58,22 @@ def rows(array):
     return [[float(x) if math.isfinite(x) else None for x in row] for row in array]
 
 
+def scalars_joined(data):
+    """The arrays, and one of vectors for the components of a displacement that are arrays of their own, such as disp_x and disp_y, or Ux and Uy."""
+    found = {}
+    for name, values in data.items():
+        match = re.fullmatch(r"(displacement|disp|u)[ _]?([xyz])", name, re.IGNORECASE)
+        if match and values.size == len(values):
+            parts = found.setdefault(match[1], {})
+            if match[2].lower() in parts:
+                sys.exit(f"several arrays may be the {match[2]} component of '{match[1]}': {', '.join(other for other in data if other.lower().startswith(match[1].lower()))}")
+            parts[match[2].lower()] = values.reshape(-1)
+    import numpy
+
+    joined = {name: numpy.stack([parts[axis] for axis in "xyz" if axis in parts], axis=1) for name, parts in found.items() if "x" in parts and "y" in parts}
+    return {**joined, **data}
+
+
 points, cells, data, own = read()
 # Nodes of a cell: corners, the middles of the sides from corner to corner, the centre of a quadrilateral.
 shapes = {"triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8, "quad9": 9}
@@ -69,7 +85,7 @@ for block in cells:
     elif block.type not in ("vertex", "line", "line3"):
         others.append(block.type)
 fields = {}
-for name, values in data.items():
+for name, values in scalars_joined(data).items():
     vector = values.ndim == 2 and values.shape[1] in (2, 3) and values.dtype.kind in "fiu"
     fields[name] = {
         "values": rows(values) if vector else None,
