@@ -13,6 +13,7 @@
 
 mod cones;
 mod higher;
+mod jointly;
 mod reported;
 mod rubbing;
 
@@ -109,15 +110,21 @@ impl Balance {
         let coupled = rubbing::coupled(problem, &holds, &slides);
         let slides = slides.into_iter().zip(coupled).collect();
         let solution = Solution { problem, candidate, holds: &holds, slides };
-        solution.slide_inside(&mut rest);
-        solution.press_and_slide_inside(&mut rest);
-        match (&candidate.on_quadrilaterals, higher) {
-            (None, Some(field)) => solution.take_inside(field, &mut rest),
-            _ => solution.take_middles(&mut rest),
-        }
-        let at_vertices = rest.clone();
-        solution.slide_at_vertices(&mut rest);
-        solution.take_vertices(&mut rest);
+        let at_vertices = if solution.is_ambiguous() {
+            solution.take_all(&mut rest);
+            rest.clone()
+        } else {
+            solution.slide_inside(&mut rest);
+            solution.press_and_slide_inside(&mut rest);
+            match (&candidate.on_quadrilaterals, higher) {
+                (None, Some(field)) => solution.take_inside(field, &mut rest),
+                _ => solution.take_middles(&mut rest),
+            }
+            let at_vertices = rest.clone();
+            solution.slide_at_vertices(&mut rest);
+            solution.take_vertices(&mut rest);
+            at_vertices
+        };
         let nodal = |i: usize| rest[i][0].hypot(rest[i][1]);
         let weighed = |i: usize| nodal(i) / forces.stiffness[i].max(f64::MIN_POSITIVE).sqrt();
         let worst = (0..rest.len()).max_by(|&a, &b| weighed(a).total_cmp(&weighed(b)));
@@ -281,9 +288,7 @@ impl Solution<'_> {
             let size = 2 * group.vertices.len();
             let mut rows = Vec::new();
             for end in &group.ends {
-                let jump =
-                    dot(self.value(end.first), end.normal) - end.second.map_or(0.0, |v| dot(self.value(v), end.normal));
-                if jump < end.gap - within {
+                if !self.is_closed(end, within) {
                     continue;
                 }
                 let own = self.directions(end);
@@ -315,6 +320,12 @@ impl Solution<'_> {
                 rest[v] = [left[i], left[i + 1]];
             }
         }
+    }
+
+    /// True if the sides touch at an end of a pair, where jumps are zero `within` a distance.
+    fn is_closed(&self, end: &End, within: f64) -> bool {
+        let jump = dot(self.value(end.first), end.normal) - end.second.map_or(0.0, |v| dot(self.value(v), end.normal));
+        jump >= end.gap - within
     }
 
     /// The vertices of Γ_K in groups that contacts tie together.

@@ -92,6 +92,23 @@ impl SparseForm {
         SparseForm { structure, values, last: Mutex::new(None) }
     }
 
+    /// The products of `rows`, entries (column, value) with no column twice, in so many `columns`, with each other.
+    pub fn of_products(rows: &[Vec<(usize, f64)>], columns: usize) -> Option<Self> {
+        let mut with_column = vec![Vec::new(); columns];
+        rows.iter().enumerate().for_each(|(i, row)| row.iter().for_each(|(k, _)| with_column[*k].push(i)));
+        let structure = Arc::new(Structure::of_cliques(rows.len(), &with_column)?);
+        let mut values = vec![0.0; structure.entries()];
+        let mut own = vec![0.0; columns];
+        for (k, row) in rows.iter().enumerate() {
+            row.iter().for_each(|(c, v)| own[*c] = *v);
+            let (start, others) = structure.column(k);
+            let product = |other: usize| rows[other].iter().map(|(c, v)| v * own[*c]).sum();
+            others.iter().enumerate().for_each(|(at, other)| values[start + at] = product(*other));
+            row.iter().for_each(|(c, _)| own[*c] = 0.0);
+        }
+        Some(SparseForm::new(structure, values))
+    }
+
     /// Adds the product of the matrix of `entry`(a) with x, symmetric, to `out`.
     fn add(&self, x: &[f64], out: &mut [f64], entry: impl Fn(f64) -> f64) {
         for (k, &own) in x.iter().enumerate() {

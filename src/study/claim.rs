@@ -8,7 +8,7 @@ use crate::compare::{
     ADMISSIBLE, Allowances, Basis, Candidate, Check, Comparison, Extent, Judged, Nonmatching, Solution,
 };
 use crate::diagnose::{Diagnosis, Energies, diagnose, in_the_mean};
-use crate::problem::{Note, Problem, Scales};
+use crate::problem::{Note, Problem, Scales, follows_coulomb};
 
 /// The result of holding a field to its claim.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +26,10 @@ pub struct Claim {
 /// A field whose guaranteed relative error is larger than this is no solution of anything.
 const NO_SOLUTION: f64 = 1.0;
 
+/// What is said of a field that follows Coulomb's law with the pressure of the stresses in the place of its own.
+const BOUNDED_BY_STRESSES: &str = "The friction of this field is bounded by the coefficient times the contact pressure of the stresses, as that of the \
+    displacement models of `hypercircle verify` is, and not by its own contact forces: it is the discrete solution with that bound.";
+
 /// Holds a field against everything that is true of a discrete solution of its degree on its mesh; `bracket` is that of the stress
 /// side, which says how large a solution can be. With `weak` its contact claims to hold in the mean over edges.
 ///
@@ -41,18 +45,34 @@ pub fn claim(
     let problem = &*problem.softened();
     let own = problem.bounded_by_contact_forces();
     let own = own.with_whole_tractions();
-    let solution = Solution::new(&own, &judged.candidate, judged.field.potential.stored())?;
-    let solution = solution.within(Extent::of(problem, bracket)).with_weak_contact(weak);
-    let mut checks = solution.checks(&Scales::new(problem).from_closed_contacts(problem), allow);
+    let scales = Scales::new(problem).from_closed_contacts(problem);
+    let held_to = |problem| {
+        let solution = Solution::new(problem, &judged.candidate, judged.field.potential.stored())?;
+        let solution = solution.within(Extent::of(problem, bracket)).with_weak_contact(weak);
+        let checks = solution.checks(&scales, allow);
+        Ok((solution, checks))
+    };
+    let (mut solution, mut checks) = held_to(&own)?;
+    let holds = |checks: &[Check]| checks.iter().all(|check| check.passed || !check.decides());
+    let bounded = problem.with_whole_tractions();
+    let mut notes = Vec::new();
+    if follows_coulomb(&problem.scene) && !holds(&checks) {
+        let (other, others) = held_to(&bounded)?;
+        if holds(&others) {
+            (solution, checks) = (other, others);
+            notes.push(Note { weakens_guarantee: false, text: BOUNDED_BY_STRESSES.to_string() });
+        }
+    }
     let diagnosis = checks
         .iter()
         .any(|c| (!c.passed && c.decides() && c.value.is_some()) || c.excused)
-        .then(|| explained(&own, judged, &solution, bracket));
-    let notes = weak_notes(&solution, || energies(problem, judged));
+        .then(|| explained(solution.problem, judged, &solution, bracket));
+    let weakly = weak_notes(&solution, || energies(problem, judged));
     let at_nodes = checks.iter_mut().filter(|check| {
         matches!(Name::read(&check.name), Name::SolutionContact(OfSolutionContact::PenetrationAtNodes, _))
     });
-    at_nodes.zip(&notes).for_each(|(check, note)| check.why.clone_from(&note.text));
+    at_nodes.zip(&weakly).for_each(|(check, note)| check.why.clone_from(&note.text));
+    notes.extend(weakly);
     Ok(Claim { diagnosis: diagnosis.flatten(), residual: solution.by_triangle(), notes, checks })
 }
 

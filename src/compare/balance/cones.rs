@@ -19,7 +19,7 @@ pub(super) fn follows_cone(pair: &ContactPair) -> bool {
 }
 
 /// The signs with which friction can act where the jump along the contact is `slip`.
-fn senses(slip: f64, within: f64) -> &'static [f64] {
+pub(super) fn senses(slip: f64, within: f64) -> &'static [f64] {
     match () {
         () if slip > within => &[1.0],
         () if slip < -within => &[-1.0],

@@ -168,7 +168,7 @@ impl Solution<'_> {
             rubbing * site.slip(prescribed) - pressing * (site.excess(prescribed) + site.gap)
         };
         let supports = held - sites.map(of_contacts).sum::<f64>();
-        let gaps = self.work_on_gaps();
+        let gaps = self.work_on_gaps() - self.work_across();
         let beside: f64 = self.beside.iter().enumerate().map(|(n, f)| dot(*f, self.candidate.value(n))).sum();
         let rubbed: f64 = self.rubbing.iter().zip(&self.slip).map(|(force, slip)| force * slip).sum();
         let (left, right) = (2.0 * self.strain, work + supports - gaps + beside + rubbed);
@@ -212,6 +212,16 @@ impl Solution<'_> {
         // Forces that push at closed coefficients alone do no work on a distance, whichever places share them here.
         let apart = if self.is_pushed() { 0.0 } else { least };
         closed - apart + self.on_gaps
+    }
+
+    /// Work of the contact forces across the normal of a place, which they have where the direction of contact turns.
+    fn work_across(&self) -> f64 {
+        // Forces that push at closed coefficients alone are all of them.
+        let part = if self.is_pushed() { 0.0 } else { 1.0 };
+        let taken = |n: usize| [0, 1].map(|c| self.unsupported[n][c] - part * self.rest[n][c]);
+        let forces: Vec<[f64; 2]> = (0..self.rest.len()).map(taken).collect();
+        let free = |n: usize| self.hold(n).project(self.candidate.value(n));
+        self.sites.across(&forces, (&self.pressing, &self.rubbing), free)
     }
 
     /// True where supports take what contact does at a place.

@@ -216,6 +216,21 @@ impl Sites {
         (pressing, rubbing)
     }
 
+    /// Work on `value` of all `forces` at places of contact, less that of `pressing` along the one direction of each and of `rubbing`;
+    /// `forces` and `value` without what supports take and prescribe.
+    pub fn across(
+        &self,
+        forces: &[[f64; 2]],
+        (pressing, rubbing): (&[f64], &[f64]),
+        value: impl Fn(usize) -> [f64; 2] + Copy,
+    ) -> f64 {
+        let along = |(site, place): (usize, &Site)| {
+            rubbing[site] * place.slip(value) - pressing[site] * place.jump(place.normal, value)
+        };
+        let all = self.groups.iter().flat_map(|group| &group.nodes).map(|node| dot(forces[*node], value(*node)));
+        all.sum::<f64>() - self.list.iter().enumerate().map(along).sum::<f64>()
+    }
+
     /// True if a place shares its friction force with nothing: supports leave both sides free to slide, and no other place has their nodes.
     pub fn rubs_alone(&self, site: usize) -> bool {
         let own = |group: &&Group| group.sites == [site];

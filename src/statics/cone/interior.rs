@@ -5,14 +5,12 @@
 //! interior point does not mind, and comes to forces in the middle of those that are possible. What has been found is held against the
 //! conditions of the projection themselves, so that a search that stopped short costs time and no verdict.
 
-use std::sync::Arc;
-
 use faer::Side;
 use faer::sparse::linalg::solvers::Llt;
 use faer::sparse::{SparseColMat, Triplet};
 
 use super::sparse::{Row, dot};
-use crate::optimise::{Law, Program, SparseForm, State, Structure, active_sets, interior_point};
+use crate::optimise::{Law, Program, SparseForm, State, active_sets, interior_point};
 use crate::vector::long::largest;
 
 /// Mean product of force and slack that the interior point aims at, for a load of size one: that of rounding in both.
@@ -37,7 +35,7 @@ pub(in crate::statics) fn see_every_motion(rows: &[Row], columns: usize) -> bool
 pub(in crate::statics) fn projection(rows: &[Row], columns: usize, load: &[f64], round_off: f64) -> Option<Vec<f64>> {
     let size = load.iter().fold(0.0_f64, |m, v| m.hypot(*v));
     let unit: Vec<f64> = load.iter().map(|v| v / size).collect();
-    let form = products(rows, columns)?;
+    let form = SparseForm::of_products(rows, columns)?;
     // The unknowns are −μ.
     let pulls: Vec<f64> = rows.iter().map(|row| -dot(row, &unit)).collect();
     let laws = vec![Law::AtMost { bound: 0.0 }; rows.len()];
@@ -85,22 +83,6 @@ fn certain(rows: &[Row], load: &[f64], x: &[f64], round_off: f64) -> Option<Vec<
     }
     let sound = broken <= round_off && length >= CERTAIN && (2.0 * work).sqrt() <= DOUBT * length;
     sound.then_some(rest)
-}
-
-/// The products of rows with each other.
-fn products(rows: &[Row], columns: usize) -> Option<SparseForm> {
-    let mut with_column = vec![Vec::new(); columns];
-    rows.iter().enumerate().for_each(|(i, row)| row.iter().for_each(|(k, _)| with_column[*k].push(i)));
-    let structure = Arc::new(Structure::of_cliques(rows.len(), &with_column)?);
-    let mut values = vec![0.0; structure.entries()];
-    let mut own = vec![0.0; columns];
-    for (k, row) in rows.iter().enumerate() {
-        row.iter().for_each(|(c, v)| own[*c] = *v);
-        let (start, others) = structure.column(k);
-        others.iter().enumerate().for_each(|(at, other)| values[start + at] = dot(&rows[*other], &own));
-        row.iter().for_each(|(c, _)| own[*c] = 0.0);
-    }
-    Some(SparseForm::new(structure, values))
 }
 
 /// The rest of `load` that the `forces` do not balance.

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::run::{Run, case, with_reference};
+use crate::arcs::disc;
 
 /// Drops times, and the name and command line of the run, which are the only things that may differ.
 fn without_seconds(value: &mut Value) {
@@ -104,12 +105,45 @@ fn fields_whose_contact_forces_others_share_can_be_handed_in_again() {
     }
 }
 
+/// A disc that lies in its bore, where the direction of contact turns: several coefficients share the forces at a node.
+#[test]
+fn fields_of_contact_that_turns_can_be_handed_in_again() {
+    if !with_reference() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let scenes = ["", "friction = { bound = 0.06 }", "friction = { coefficient = 0.3 }"].map(|friction| {
+        let normals = "normals = \"smooth\"\n";
+        let text = disc(12, "force", "smooth").replace(normals, &format!("{normals}gap = 0.003\n{friction}\n"));
+        let path = folder.path().join(format!("disc{}.toml", friction.len()));
+        std::fs::write(&path, text).expect("written");
+        path
+    });
+    for scene in &scenes {
+        let verified = Run::new("verify", scene, &[]);
+        assert_eq!(verified.code, Some(0), "{}{}", verified.stdout, verified.stderr);
+        (0..2).for_each(|model| drop(taken_back(&verified, scene, model)));
+        // With more or less friction it is no solution.
+        for other in scenes.iter().filter(|other| *other != scene) {
+            for model in 0..2 {
+                let run = handed_in(&verified, other, model);
+                assert_eq!(run.code, Some(1), "{} P{}: {}", other.display(), model + 1, run.stdout);
+            }
+        }
+    }
+}
+
 /// The run that takes the field of degree `model` + 1 in a report for the solution that it is.
 fn taken_back(verified: &Run, scene: &Path, model: usize) -> Run {
+    let certified = handed_in(verified, scene, model);
+    let said = (&certified.stdout, &certified.stderr);
+    assert_eq!(certified.code, Some(0), "{} P{}: {}{}", scene.display(), model + 1, said.0, said.1);
+    certified
+}
+
+fn handed_in(verified: &Run, scene: &Path, model: usize) -> Run {
     let (fields, name) =
         (verified.folder.path().join("out/fields.vtu"), format!("displacement_FEniCSx_P{}", model + 1));
     let field = fields.to_str().expect("a plain path");
-    let certified = Run::new("certify", scene, &["--displacement", field, "--field", &name, "--solution"]);
-    assert_eq!(certified.code, Some(0), "{} {name}: {}{}", scene.display(), certified.stdout, certified.stderr);
-    certified
+    Run::new("certify", scene, &["--displacement", field, "--field", &name, "--solution"])
 }
