@@ -42,6 +42,9 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
     }
 }
 
+/// Bytes of a file that was packed: more are no mesh that anything here could solve, and may fill the memory.
+const MOST_UNPACKED: u64 = 1 << 30;
+
 /// The bytes of a file, unpacked where it is packed with gzip.
 fn content(file: &Path) -> Result<Vec<u8>, (String, &'static str)> {
     let bytes = std::fs::read(file).map_err(|e| (format!("cannot be read: {e}"), "check its permissions"))?;
@@ -49,9 +52,13 @@ fn content(file: &Path) -> Result<Vec<u8>, (String, &'static str)> {
         return Ok(bytes);
     }
     let mut unpacked = Vec::new();
-    MultiGzDecoder::new(&*bytes).read_to_end(&mut unpacked).map_err(|e| {
+    let read = MultiGzDecoder::new(&*bytes).take(MOST_UNPACKED + 1).read_to_end(&mut unpacked);
+    let length = read.map_err(|e| {
         (format!("cannot be unpacked with gzip: {e}"), "pack it again, or give the file that was packed")
     })?;
+    if length as u64 > MOST_UNPACKED {
+        return Err(("is longer than 1 GiB when it is unpacked".to_string(), "give a smaller mesh"));
+    }
     Ok(unpacked)
 }
 

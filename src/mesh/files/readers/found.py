@@ -5,7 +5,6 @@ import gzip
 import math
 import os
 import re
-import shutil
 import sys
 import tempfile
 import zlib
@@ -204,6 +203,10 @@ def columns(line, widths):
     return found
 
 
+# More are no mesh that anything here could solve, and may fill the disk.
+MOST_UNPACKED = 1 << 30
+
+
 def unpacked(source, target):
     """The file, or an unpacked copy in the folder of `target` where it is packed with gzip."""
     if not source.lower().endswith(".gz"):
@@ -211,7 +214,10 @@ def unpacked(source, target):
     copy = os.path.join(os.path.dirname(target), os.path.basename(source)[:-3])
     try:
         with gzip.open(source, "rb") as file, open(copy, "wb") as out:
-            shutil.copyfileobj(file, out)
+            while block := file.read(1 << 20):
+                out.write(block)
+                if out.tell() > MOST_UNPACKED:
+                    refuse("it is longer than 1 GiB when it is unpacked: give a smaller mesh")
     except (OSError, EOFError, zlib.error) as error:
         refuse(f"it cannot be unpacked with gzip ({error}): pack it again, or give the file that was packed")
     return copy
