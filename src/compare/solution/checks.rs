@@ -216,9 +216,13 @@ impl Solution<'_> {
 
     /// Work of the contact forces across the normal of a place, which they have where the direction of contact turns.
     fn work_across(&self) -> f64 {
+        if self.problem.pairs().all(|pair| pair.direction.is_constant()) {
+            return 0.0;
+        }
         // Forces that push at closed coefficients alone are all of them.
         let part = if self.is_pushed() { 0.0 } else { 1.0 };
-        let taken = |n: usize| [0, 1].map(|c| self.unsupported[n][c] - part * self.rest[n][c]);
+        let beside = |n: usize| self.beside.get(n).copied().unwrap_or_default();
+        let taken = |n: usize| [0, 1].map(|c| self.unsupported[n][c] - part * self.rest[n][c] - beside(n)[c]);
         let forces: Vec<[f64; 2]> = (0..self.rest.len()).map(taken).collect();
         let free = |n: usize| self.hold(n).project(self.candidate.value(n));
         self.sites.across(&forces, (&self.pressing, &self.rubbing), free)
