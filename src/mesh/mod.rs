@@ -20,6 +20,7 @@ pub use cells::file_cells::{FileCells, Quadrilateral};
 pub use error::MeshError;
 pub use refinement::uncut::Uncut;
 pub use select::Sets;
+pub use sides::bulge::CORNER;
 pub use topology::touching::{Touching, touching};
 
 /// A hash map whose order is of no consequence, with a hash that is fast on vertex pairs.

@@ -10,6 +10,7 @@ use super::contact::friction::resist;
 use super::contact::normals::{Coarser, inherit, keep_gap, replace, smooth};
 use super::contact::pair_up;
 use super::contact::softened;
+use super::scales::ROUND_OFF;
 use super::{Bed, Condition, Counted, Note, Problem, ProblemError, Refinement, polynomial};
 use crate::element::Section;
 use crate::mesh::MeshError;
@@ -99,11 +100,12 @@ impl Problem {
     /// [`Problem::new`], with the directions of contact of a `coarser` mesh where there is one.
     fn with_directions(
         scene: Scene,
-        mesh: Triangulation,
+        mut mesh: Triangulation,
         mut notes: Vec<Note>,
         coarser: Option<&Coarser>,
     ) -> Result<Problem, ProblemError> {
         let section = section(&scene);
+        put_on_axis(&mut mesh, section);
         on_axis(&scene, &mesh, section)?;
         let roles = roles(&scene);
         let mut conditions: Vec<Condition> = (0..mesh.edges.len())
@@ -304,6 +306,14 @@ impl Problem {
         let problem = self.divided(finer.mesh, &curved)?;
         Ok((problem, finer.refinement, finer.parent))
     }
+}
+
+/// Puts points on the axis of revolution that rounding keeps from it: the cosine of a right angle is 6e-17.
+fn put_on_axis(mesh: &mut Triangulation, section: Section) {
+    let Section::Revolved { axis } = section else { return };
+    let radius = mesh.points.iter().fold(0.0_f64, |m, p| m.max(section.weight(*p).abs()));
+    let near = mesh.points.iter_mut().filter(|p| section.weight(**p).abs() <= ROUND_OFF * radius);
+    near.for_each(|p| p[0] = axis);
 }
 
 /// Refuses points beyond the axis of revolution, and conditions on it that cannot be.

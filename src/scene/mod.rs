@@ -249,7 +249,7 @@ pub struct Contact {
 /// Where the directions of contact come from.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Normals {
-    /// From the vertices: edges that turn by less than 30° stand for a curve, see [`crate::problem::Direction`].
+    /// From the vertices: edges that turn by up to 30° stand for a curve, see [`crate::problem::Direction`].
     #[default]
     Smooth,
     /// Every edge has its own normal.

@@ -46,6 +46,18 @@ fn smooth_normals_close_the_bracket_and_facets_do_not() {
     assert!(facets[2] > 3.0 * smooth[2], "{facets:?} {smooth:?}");
 }
 
+/// Its edges turn by 30°, which rounding makes a little more here and a little less there.
+#[test]
+fn a_circle_of_twelve_edges_has_no_corner() {
+    let problem = problem(&disc(12, "", "smooth"));
+    for pair in problem.pairs() {
+        for (v, n) in pair.first.into_iter().zip(pair.direction.ends) {
+            let [x, y] = problem.mesh.points[v];
+            assert!((x * n[1] - y * n[0]).abs() < 1e-9, "{n:?} at ({x}, {y})");
+        }
+    }
+}
+
 #[test]
 fn concave_arcs_are_as_good_as_convex_ones() {
     let error = |rise| relative_error(&problem(&Arcs { rise, n: 16, ..Arcs::default() }.text()));

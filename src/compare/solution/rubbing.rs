@@ -81,7 +81,10 @@ impl Solution<'_> {
     /// its force.
     pub fn rubbed(&self, interface: usize) -> Vec<Rubbed> {
         let missed = |list: &Vec<Rubbed>| list.iter().map(|r| r.miss).sum::<f64>();
-        let asked = ASKED.map(|ask| self.rubbed_as(interface, ask)).into_iter();
+        // Where the direction turns nodes have no coefficients of their own: those are all held against the field together.
+        let turns = self.problem.interfaces[interface].pairs.iter().any(|pair| !pair.direction.is_constant());
+        let asked = ASKED.into_iter().filter(|ask| !turns || *ask != Ask::InCoefficients);
+        let asked = asked.map(|ask| self.rubbed_as(interface, ask));
         asked.min_by(|a, b| missed(a).total_cmp(&missed(b))).unwrap_or_default()
     }
 

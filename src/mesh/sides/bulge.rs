@@ -7,8 +7,8 @@ use std::collections::HashMap;
 
 use crate::mesh::Triangulation;
 
-/// Cosine of the angle between two edges beyond which the vertex between them is a corner: 30°.
-const CORNER: f64 = 0.866_025_403_784_438_6;
+/// Cosine of the angle between two edges beyond which the vertex between them is a corner: 30°, as far as coordinates are rounded.
+pub const CORNER: f64 = 0.866_025_40;
 /// Part of what the curvatures tell by which a vertex on the curve may lie elsewhere.
 const SLACK: f64 = 0.15;
 /// Angle between two edges below which they are in line.

@@ -6,12 +6,10 @@
 use std::collections::HashMap;
 
 use super::direction::unit;
-use crate::mesh::Curved;
+use crate::mesh::{CORNER, Curved};
 use crate::problem::{ContactPair, Interface, Note, Refinement};
 use crate::scene::counted;
 
-/// Cosine of the angle between the normals of two edges beyond which the vertex between them is a corner: 30°.
-const CORNER: f64 = 0.866_025_403_784_438_6;
 /// Sine below which two edges are in line.
 const IN_LINE: f64 = 1e-6;
 /// An edge this many times as long as its neighbour is no part of the same curve, but a straight side that it runs into.

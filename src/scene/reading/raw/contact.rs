@@ -20,7 +20,7 @@ pub(in crate::scene) struct RawContact {
     pub on: Option<At<String>>,
     /// Initial gap, zero where it is missing; one number below zero between two sides is an interference fit.
     pub gap: Option<At<RawGap>>,
-    /// `smooth`, the default: edges that turn by less than 30° stand for a curve. `facets`: every edge has its own normal.
+    /// `smooth`, the default: edges that turn by up to 30° stand for a curve. `facets`: every edge has its own normal.
     #[schemars(extend("enum" = ["smooth", "facets"]))]
     pub normals: Option<At<String>>,
     /// The sides need not coincide: they are matched along this direction, the gap is their distance along it plus `gap`,
