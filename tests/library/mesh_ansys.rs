@@ -1,6 +1,6 @@
 //! Archives of Ansys MAPDL by hand, in the manner of its manual: the plate of `mesh_formats` goes in as it is, and what is no plane mesh is refused.
 
-use crate::mesh_formats::{Folder, LIMIT, check, rows, scene};
+use crate::mesh_formats::{Folder, LIMIT, check, refused, rows, scene};
 use hypercircle::mesh::inventory::{Inventory, starting_scene};
 use hypercircle::problem::Problem;
 use hypercircle::scene::{Kinematics, Scene};
@@ -56,14 +56,6 @@ fn archive(types: &str, more: &str) -> String {
         9,
         1
     )
-}
-
-#[track_caller]
-fn refused(folder: &Folder, name: &str, text: &str, fragments: &[&str]) {
-    let error = Inventory::read(&folder.write(name, text), LIMIT).expect_err("no mesh").to_string();
-    for fragment in [&[name][..], fragments].concat() {
-        assert!(error.contains(fragment), "'{fragment}' is not in: {error}");
-    }
 }
 
 #[test]

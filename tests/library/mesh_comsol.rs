@@ -1,6 +1,6 @@
 //! Text meshes of COMSOL by hand, in the manner of its manual: the plate of `mesh_formats` goes in as it is, and what is no plane mesh is refused.
 
-use crate::mesh_formats::{Folder, LIMIT, check, rows};
+use crate::mesh_formats::{Folder, LIMIT, check, refused, rows};
 use hypercircle::mesh::inventory::Inventory;
 
 /// A type of elements: name, nodes, and entities.
@@ -46,14 +46,6 @@ fn plate() -> String {
         elements("quad", &[&[0, 1, 3, 4]], &[1]),
     ];
     file(2, &rows(|_, [x, y]| format!("{x} {y} \n")), &types, "")
-}
-
-#[track_caller]
-fn refused(folder: &Folder, name: &str, text: &str, fragments: &[&str]) {
-    let error = Inventory::read(&folder.write(name, text), LIMIT).expect_err("no mesh").to_string();
-    for fragment in [&[name][..], fragments].concat() {
-        assert!(error.contains(fragment), "'{fragment}' is not in: {error}");
-    }
 }
 
 #[test]

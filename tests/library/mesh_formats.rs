@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use hypercircle::mesh::inventory::Inventory;
 use hypercircle::problem::{Condition, Problem};
 use hypercircle::scene::{Body, Draft, Kinematics, Load, MeshSource, Scene, Support, SupportKind, Traction};
 
@@ -57,6 +58,15 @@ impl Folder {
         std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
         std::fs::write(&path, bytes).expect("a file");
         path
+    }
+}
+
+/// Reads a file that is refused, in words that have its name and all `fragments`.
+#[track_caller]
+pub fn refused(folder: &Folder, name: &str, bytes: impl AsRef<[u8]>, fragments: &[&str]) {
+    let error = Inventory::read(&folder.write(name, bytes), LIMIT).expect_err("no mesh").to_string();
+    for fragment in [&[name][..], fragments].concat() {
+        assert!(error.contains(fragment), "'{fragment}' is not in: {error}");
     }
 }
 

@@ -1,17 +1,9 @@
 //! What another program wrote is read whole, by the names that it has, or refused: nothing of it is missing without a word.
 
-use crate::mesh_formats::{Folder, LIMIT, POINTS, check, rows, scene, vtu};
+use crate::mesh_formats::{Folder, LIMIT, POINTS, check, refused, rows, scene, vtu};
 use hypercircle::mesh::inventory::{Inventory, starting_scene};
 use hypercircle::problem::Problem;
 use hypercircle::scene::{Kinematics, Scene};
-
-#[track_caller]
-fn refused(folder: &Folder, name: &str, bytes: impl AsRef<[u8]>, fragments: &[&str]) {
-    let error = Inventory::read(&folder.write(name, bytes), LIMIT).expect_err("no mesh").to_string();
-    for fragment in [&[name][..], fragments].concat() {
-        assert!(error.contains(fragment), "'{fragment}' is not in: {error}");
-    }
-}
 
 #[track_caller]
 fn read(folder: &Folder, name: &str, bytes: impl AsRef<[u8]>) -> Inventory {

@@ -90,8 +90,8 @@ pub(in crate::mesh) struct Content {
     pub names: HashMap<(i32, i32), String>,
     /// Names by the numbers that the file itself has, where `names` has others.
     pub numbers: Option<HashMap<(i32, i32), String>>,
-    /// Stand-ins of tags with more digits than a tag of a scene has.
-    pub long: HashMap<i64, i32>,
+    /// Tags with more digits than a tag of a scene has, and the place of each: the stand-in of the first is the least tag.
+    pub long: (Vec<i64>, HashMap<i64, usize>),
     /// Physical tags by dimension and tag of an elementary entity (version 4).
     pub entities: HashMap<(i32, i32), Rc<[i32]>>,
     /// Coordinates by node tag.
@@ -202,14 +202,19 @@ impl Content {
 
     /// The tag itself, or a stand-in that no file has for one with too many digits.
     pub fn tag(&mut self, tag: i64) -> i32 {
-        let next = i32::MIN.saturating_add(i32::try_from(self.long.len()).unwrap_or(i32::MAX));
-        i32::try_from(tag).unwrap_or_else(|_| *self.long.entry(tag).or_insert(next))
+        i32::try_from(tag).unwrap_or_else(|_| {
+            let (tags, places) = &mut self.long;
+            let place = *places.entry(tag).or_insert(tags.len());
+            if place == tags.len() {
+                tags.push(tag);
+            }
+            i32::MIN.saturating_add(i32::try_from(place).unwrap_or(i32::MAX))
+        })
     }
 
     /// The tag that this one stands for, if it does.
     fn long_tag(&self, tag: i32) -> Option<i64> {
-        let long = if tag < 0 { self.long.iter().find(|(_, short)| **short == tag) } else { None };
-        long.map(|(long, _)| *long)
+        self.long.0.get(usize::try_from(i64::from(tag) - i64::from(i32::MIN)).ok()?).copied()
     }
 
     /// How many cells of each kind there are.

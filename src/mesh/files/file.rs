@@ -28,7 +28,7 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
     if !kind.is_file() {
         return Err(MeshError::file(file, "this is not a regular file", "write the mesh into a file"));
     }
-    let bytes = || content(file).map_err(|(what, remedy)| MeshError::file(file, what, remedy));
+    let bytes = || content(file);
     match encoding::unpacked_name(file).extension().map(|extension| extension.to_ascii_lowercase()) {
         Some(extension) if extension == "msh" => match bytes()? {
             text if others(&text) => foreign::read(file, limit),
@@ -46,18 +46,19 @@ pub fn read(file: &Path, limit: Duration) -> Result<(RawMesh, Vec<Note>), MeshEr
 const MOST_UNPACKED: u64 = 1 << 30;
 
 /// The bytes of a file, unpacked where it is packed with gzip.
-fn content(file: &Path) -> Result<Vec<u8>, (String, &'static str)> {
-    let bytes = std::fs::read(file).map_err(|e| (format!("cannot be read: {e}"), "check its permissions"))?;
+fn content(file: &Path) -> Result<Vec<u8>, MeshError> {
+    let fault = |what: String, remedy: &str| MeshError::file(file, what, remedy);
+    let bytes = std::fs::read(file).map_err(|e| fault(format!("cannot be read: {e}"), "check its permissions"))?;
     if encoding::unpacked_name(file) == file {
         return Ok(bytes);
     }
     let mut unpacked = Vec::new();
     let read = MultiGzDecoder::new(&*bytes).take(MOST_UNPACKED + 1).read_to_end(&mut unpacked);
     let length = read.map_err(|e| {
-        (format!("cannot be unpacked with gzip: {e}"), "pack it again, or give the file that was packed")
+        fault(format!("cannot be unpacked with gzip: {e}"), "pack it again, or give the file that was packed")
     })?;
     if length as u64 > MOST_UNPACKED {
-        return Err(("is longer than 1 GiB when it is unpacked".to_string(), "give a smaller mesh"));
+        return Err(fault("is longer than 1 GiB when it is unpacked".to_string(), "give a smaller mesh"));
     }
     Ok(unpacked)
 }

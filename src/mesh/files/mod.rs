@@ -8,4 +8,4 @@ pub mod foreign;
 pub mod gmsh;
 pub mod meshio;
 pub(super) mod parts;
-mod plane;
+pub mod plane;

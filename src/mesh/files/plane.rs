@@ -69,27 +69,32 @@ impl Plane {
     }
 }
 
+/// The axes that become x, y and z where points stand, `within` a distance, in a plane of constant y or x, with that constant: x, z, y, or
+/// y, z, x.
+pub fn upright(points: impl Iterator<Item = [f64; 3]>, within: f64) -> Option<([usize; 3], f64)> {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for point in points {
+        low = [0, 1, 2].map(|c| low[c].min(point[c]));
+        high = [0, 1, 2].map(|c| high[c].max(point[c]));
+    }
+    match [0, 1, 2].map(|c| high[c] - low[c] <= within) {
+        [false, true, false] => Some(([0, 2, 1], low[1])),
+        [true, false, false] => Some(([1, 2, 0], low[0])),
+        _ => None,
+    }
+}
+
 impl Content {
-    /// Turns a mesh that stands in a plane of constant y or x into that of x and y, and says so: x, z of the file become x, y, or y, z do.
+    /// Turns a mesh that stands in a plane of constant y or x into that of x and y, and says so.
     pub(super) fn laid_down(&mut self) -> Option<Note> {
         let size = self.nodes.values().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let mut range = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        for point in self.elements.iter().flat_map(|e| &e.nodes).filter_map(|tag| self.nodes.get(tag)) {
-            for c in 0..3 {
-                range[0][c] = range[0][c].min(point[c]);
-                range[1][c] = range[1][c].max(point[c]);
-            }
-        }
-        let flat = [0, 1, 2].map(|c| range[1][c] - range[0][c] <= FLAT * size);
-        let ([first, second, across], names) = match flat {
-            [false, true, false] => ([0, 2, 1], ["y", "x and z"]),
-            [true, false, false] => ([1, 2, 0], ["x", "y and z"]),
-            _ => return None,
-        };
-        let constant = range[0][across];
-        self.nodes.values_mut().for_each(|p| *p = [p[first], p[second], p[across]]);
-        let [name, others] = names;
-        let text = format!("The mesh lies in the plane {name} = {constant}: {others} of the file are x and y here.");
+        let used = self.elements.iter().flat_map(|e| &e.nodes).filter_map(|tag| self.nodes.get(tag));
+        let (axes, constant) = upright(used.copied(), FLAT * size)?;
+        self.nodes.values_mut().for_each(|p| *p = axes.map(|c| p[c]));
+        let [first, second, name] = axes.map(|c| ["x", "y", "z"][c]);
+        let text = format!(
+            "The mesh lies in the plane {name} = {constant}: {first} and {second} of the file are x and y here."
+        );
         Some(Note { weakens_guarantee: false, text })
     }
 }

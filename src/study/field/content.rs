@@ -8,6 +8,7 @@ use serde::Deserialize;
 
 use super::{FieldArrays, FieldError, ForeignField, cells, digits};
 use crate::mesh::files::meshio;
+use crate::mesh::files::plane::upright;
 use crate::study::dossier::provenance::hash;
 
 const SCRIPT: &str = concat!(
@@ -185,22 +186,15 @@ fn plane(numbers: &[Option<f64>]) -> Option<[f64; 2]> {
     all.and_then(|all| all.get(..2)?.try_into().ok())
 }
 
-/// Turns a field in a plane of constant y or x into one of x and y, as the mesh of such a file is: x, z become x, y, or y, z do.
+/// Turns a field in a plane of constant y or x into one of x and y, as the mesh of such a file is.
 fn lay_down(content: &mut Content) {
     let tolerance = if content.single { f64::from(f32::EPSILON) } else { FLAT };
     let size = content.points.iter().flatten().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let flat = [0, 1, 2].map(|c| {
-        let coordinates = || content.points.iter().filter_map(|p| p.get(c).copied().flatten());
-        let (low, high) = coordinates().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
-        high - low <= tolerance * size
-    });
-    let turn: fn(&mut Vec<Option<f64>>) = match flat {
-        [false, true, false] => |row| row.swap(1, 2),
-        [true, false, false] => |row| row.rotate_left(1),
-        _ => return,
-    };
+    let points = content.points.iter().filter_map(|row| Some([(*row.first()?)?, (*row.get(1)?)?, (*row.get(2)?)?]));
+    let Some((axes, _)) = upright(points, tolerance * size) else { return };
     let rows = content.fields.values_mut().filter_map(|data| data.values.as_mut()).flatten();
-    content.points.iter_mut().chain(rows).filter(|row| row.len() == 3).for_each(turn);
+    let turned = content.points.iter_mut().chain(rows).filter(|row| row.len() == 3);
+    turned.for_each(|row| *row = axes.iter().map(|c| row[*c]).collect());
 }
 
 type Chosen<'a> = (&'a str, &'a Data);

@@ -163,15 +163,15 @@ fn physical_names(cursor: &mut Cursor, content: &mut Content) -> Result<(), Mesh
     for _ in 0..count {
         let line = cursor.full_line().unwrap_or_default();
         let mut words = line.splitn(3, char::is_whitespace);
-        let mut number = || words.next().and_then(|w| w.parse::<i64>().ok());
-        let (dimension, tag) = (number(), number());
+        let dimension = words.next().and_then(|w| w.parse::<i32>().ok());
+        let tag = words.next().and_then(|w| w.parse::<i64>().ok());
         let name = words.next().and_then(|w| w.trim().strip_prefix('"')?.strip_suffix('"'));
         let (Some(dimension), Some(tag), Some(name)) = (dimension, tag, name) else {
             let what = format!("found '{}' where dimension, number and \"name\" should be", shortened(&line));
             return Err(cursor.fault(what, "the file is truncated or damaged: write it again"));
         };
         let tag = content.tag(tag);
-        content.names.insert((i32::try_from(dimension).unwrap_or_default(), tag), name.to_string());
+        content.names.insert((dimension, tag), name.to_string());
     }
     Ok(())
 }

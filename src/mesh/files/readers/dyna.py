@@ -2,6 +2,7 @@
 
 import os
 import re
+from collections import Counter
 
 # ELFORM of the shells of a plane and of a body of revolution about x = 0.
 DYNA_MADE_FOR = {12: "plane-stress", 13: "plane-strain", 14: "axisymmetric", 15: "axisymmetric"}
@@ -68,7 +69,7 @@ class Dyna:
     def __init__(self):
         self.found = Found("LS-DYNA")
         self.titles, self.sections, self.forms = {}, {}, {}  # Title and section by part, ELFORM by section.
-        self.parts_of_sets, self.left_out = {}, {}
+        self.left_out = Counter()
 
     def part(self, keyword, cards, width):
         # Options have more cards behind the first two, so that only the first part of such a block is told.
@@ -110,19 +111,17 @@ class Dyna:
             tag, part, *nodes = (dyna_ints(card, [width] * 10) + [0] * 10)[:10]
             if tag < 1 or part < 1:
                 raise Unreadable("a shell has no number or no part: its numbers do not stand in the columns of the format")
-            more = any(nodes[4:]) and 1 + bool({"THICKNESS", "BETA", "MCID"}.intersection(options)) or 1
-            for option in ("THICKNESS", "OFFSET", "DOF"):
-                if option in options or option == "THICKNESS" and {"BETA", "MCID"}.intersection(options):
-                    for _ in range(more if option == "THICKNESS" else 1):
-                        if next(cards, None) is None:
-                            raise Unreadable(f"shell {tag} has no card for {option}: the file is cut off")
+            # Thicknesses and angles of middles have a card of their own.
+            thick = ["THICKNESS"] * (1 + any(nodes[4:])) if {"THICKNESS", "BETA", "MCID"}.intersection(options) else []
+            for option in thick + [option for option in ("OFFSET", "DOF") if option in options]:
+                if next(cards, None) is None:
+                    raise Unreadable(f"shell {tag} has no card for {option}: the file is cut off")
             if 0 in nodes[:3]:
                 raise Unreadable(f"shell {tag} has no node at corner {nodes.index(0) + 1}")
             nodes[3] = nodes[3] or nodes[2]
             shape, nodes = collapsed(tag, nodes)
-            corners = 3 if shape == "triangle" else 4
             name = self.found.number(2, part, self.known)
-            self.found.cell(shape, nodes[:corners] if 0 in nodes else nodes, [name], tag)
+            self.found.cell(shape, whole_or_corners(shape, nodes), [name], tag)
             form = self.forms.get(self.sections.get(part))
             if form in DYNA_MADE_FOR:
                 self.found.made_for.setdefault(DYNA_MADE_FOR[form], f"*ELEMENT_SHELL of ELFORM {form}")
@@ -155,7 +154,7 @@ class Dyna:
                 if len(ends) == 2:
                     self.found.cell("line", ends, [name])
                 else:
-                    self.left_out.setdefault(f"segments of {len(ends)} nodes in {name}", []).append(1)
+                    self.left_out[f"segments of {len(ends)} nodes in {name}"] += 1
             return
         tags = [tag for row in members for tag in row if tag]
         known = self.found.index if what == "node" else self.shells_known
@@ -197,7 +196,7 @@ def read_dyna(source):
         elif keyword in ("ELEMENT_SOLID", "ELEMENT_TSHELL"):
             deck.solids(keyword, cards, width)
         elif DYNA_IDLE.match(keyword):
-            deck.left_out.setdefault("*" + keyword, []).append(1)
+            deck.left_out["*" + keyword] += 1
         elif keyword.startswith("ELEMENT_"):
             raise Unreadable(f"*{keyword} is not read, which may have an area or a volume: use *ELEMENT_SHELL")
     deck.shells_known = set(found.by_tag)
@@ -205,9 +204,9 @@ def read_dyna(source):
         if re.match("SET_(NODE|SHELL)(_LIST)?(_GENERATE)?(_TITLE)?$|SET_SEGMENT(_TITLE)?$", keyword):
             deck.set(keyword, cards, width)
         elif re.match("SET_(NODE|SHELL|SEGMENT|2D_SEGMENT)_", keyword):
-            deck.left_out.setdefault("*" + keyword, []).append(1)
+            deck.left_out["*" + keyword] += 1
     if deck.left_out:
-        told = ", ".join(what if what.startswith("*") else f"{len(items)} {what}" for what, items in deck.left_out.items())
+        told = ", ".join(what if what.startswith("*") else f"{count} {what}" for what, count in deck.left_out.items())
         found.notes.append(f"Left out, as without an area or an edge of the plane: {told}.")
     return found
 

@@ -12,6 +12,7 @@ import zlib
 # Cells by shape and number of nodes, in Gmsh's order: corners, middles of sides, centre.
 PLANE = {("line", 2), ("line", 3), ("triangle", 3), ("triangle", 6), ("quadrilateral", 4), ("quadrilateral", 8), ("quadrilateral", 9)}
 SIDES = {"triangle": [(0, 1), (1, 2), (2, 0)], "quadrilateral": [(0, 1), (1, 2), (2, 3), (3, 0)]}
+CORNERS = {"line": 2, "triangle": 3, "quadrilateral": 4}
 
 # Byte order marks of UTF-8 and of UTF-16.
 MARKS = (b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")
@@ -168,6 +169,11 @@ class Found:
         sets = {name: [self.index[tag] for tag in tags if tag in self.index] for name, tags in self.node_sets.items()}
         numbers = [[*key, name] for key, name in self.numbers.items() if abs(key[1]) < 2**31]
         return {"points": self.points, "blocks": self.blocks(), "node_sets": sets, "numbers": numbers, "notes": self.notes, "made_for": list(self.made_for.items())}
+
+
+def whole_or_corners(shape, nodes):
+    """The nodes of a cell, in which 0 is none; without all middles of its sides it has only corners."""
+    return nodes[:CORNERS[shape]] if 0 in nodes else nodes
 
 
 def collapsed(tag, nodes):

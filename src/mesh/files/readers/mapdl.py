@@ -126,26 +126,21 @@ class Mapdl:
         self.elements[number] = match[1]
         self.keys.update({(number, key): value for key, value in enumerate(keys, 1)})
 
-    def rows(self, what):
-        """The rows of a block in columns, up to its last line."""
+    def rows(self, what, end=r"\s*EN?,"):
+        """The rows of a block in columns, up to its last line, which is a command or −1."""
         widths = fortran_widths(self.next(what))
         while True:
             line = self.next(what)
-            if line.strip() == "-1" or re.match(r"\s*EN?,", line):
+            if line.strip() == "-1" or re.match(end, line):
                 return
             if line.strip():
                 yield columns(line, widths)
 
     def nodes(self, solid, announced):
-        widths, count, first = fortran_widths(self.next("NBLOCK")), 0, 3 if solid else 1
-        while True:
-            line = self.next("NBLOCK")
-            if line.strip() == "-1" or re.match(r"\s*N,", line):
-                break
-            fields = columns(line, widths)
-            if fields:
-                self.found.point(int(fields[0]), [real(text or "0") for text in (fields[first:first + 3] + [""] * 3)[:3]])
-                count += 1
+        count, first = 0, 3 if solid else 1
+        for fields in self.rows("NBLOCK", r"\s*N,"):
+            self.found.point(int(fields[0]), [real(text or "0") for text in (fields[first:first + 3] + [""] * 3)[:3]])
+            count += 1
         self.agree("NBLOCK", "nodes", announced, count)
 
     def agree(self, block, things, announced, count):
@@ -226,14 +221,13 @@ class Mapdl:
 
 
 def mapdl_plane(tag, shape, count, nodes):
-    """Shape and nodes of a cell; without all middles of its sides it has only corners."""
-    corners = {"line": 2, "triangle": 3}.get(shape, 4)
+    """Shape and nodes of a cell."""
     nodes = (nodes + [0] * count)[:count]
-    if 0 in nodes[:corners]:
+    if 0 in whole_or_corners(shape, nodes):
         raise Unreadable(f"element {tag} has no node at corner {nodes.index(0) + 1}")
     if shape == "quadrilateral":
         shape, nodes = collapsed(tag, nodes)
-    return shape, nodes[:{"line": 2, "triangle": 3}.get(shape, 4)] if 0 in nodes else nodes
+    return shape, whole_or_corners(shape, nodes)
 
 
 def read_mapdl(source):
