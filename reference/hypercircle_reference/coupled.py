@@ -17,13 +17,16 @@ from petsc4py import PETSc
 
 from hypercircle_process import Failure, log
 
-from .descent import CLOSED, EPSILON, Descent, Minimum
+from .descent import CLOSED, EPSILON, ROUNDING, Descent, Minimum
 
 STIFF, STIFFER, STIFFEST = 100.0, 30.0, 1e7
 """Stiffness of the springs beside the unit diagonal of A; by how much it grows where rounds gain little; and the most it is."""
 
 SLOW = 0.3
 """Rounds gain little where what is stretched falls by less than this factor."""
+
+SAME = 1e-3
+"""A spring stays stretched where that changes by less than this part of it from round to round."""
 
 STRETCHED = 1e-13
 """Springs are as good as rigid where they are stretched by less, relative to the largest jump."""
@@ -112,6 +115,7 @@ class CoupledDescent:
         wide = self._joined(np.broadcast_to(near, it.b.shape), infinite) / scale
         forces = np.zeros(len(rows.weight)) if forces is None else forces
         start, steps, best = None, 0, np.inf
+        before, hurried = np.full(len(forces), np.inf), np.zeros(len(forces), bool)
         load = self.comm.allreduce(float(np.abs(it.terms).max(initial=0.0)), MPI.MAX)
         for _ in range(ROUNDS):
             right = self._joined(it.b, 0.0 * forces) - (self.stretch.T @ forces)[self.mine]
@@ -125,10 +129,19 @@ class CoupledDescent:
             size = max(np.abs(rows.kink).max(initial=0.0), np.abs(x[self.slack]).max(initial=0.0), self._size(x))
             worst = np.abs(stretched).max(initial=0.0)
             log(self.comm, f"coupled friction: stretched by {worst:.1e} of {size:.1e}")
-            # Rounding ends what is gained from round to round, and so does that of what the loads do on the unit diagonal.
-            hidden = worst <= EPSILON * load
+            # Rounding ends what is gained from round to round, and so does that of what the loads do on the unit diagonal, or that of
+            # displacements where those along the contact are next to none.
+            hidden = worst <= EPSILON * max(load, ROUNDING * np.abs(x).max(initial=0.0))
             if hidden or worst <= STRETCHED * size or (worst >= best and worst <= 1e4 * STRETCHED * size):
                 return self._found(found, forces, steps), forces / rows.length
+            # What has all its unknowns held slides by what they say: its force is the whole bound, to which rounds would climb slowly.
+            stays = (np.abs(stretched - before) <= SAME * np.abs(stretched)) & (np.abs(stretched) > STRETCHED * size)
+            slides = stays & ~hurried & (np.abs(forces) < rows.weight)
+            if slides.any():
+                forces = np.where(slides, np.copysign(rows.weight, stretched), forces)
+                before, hurried, best = stretched, hurried | slides, np.inf
+                continue
+            before = stretched
             if worst > SLOW * best and self.stiff < STIFFEST:
                 return CoupledDescent(it, rows, STIFFER * self.stiff).minimise(near, forces)
             best = min(best, worst)

@@ -6,21 +6,27 @@ from itertools import product
 import numpy as np
 import pytest
 from hypercircle_process import Failure
-from hypercircle_reference.descent import Descent
+from hypercircle_reference.coupled import CoupledDescent, Rows
+from hypercircle_reference.descent import CLOSED, Descent
 from mpi4py import MPI
 from petsc4py import PETSc
+from scipy import sparse
 from scenes import Builder, arched_blocks, two_blocks
 
 FREE, LOW, HIGH = range(3)
 
 
-def descend(matrix, right, lower, upper, *friction):
+def descent(matrix, right, lower, upper, *friction):
     size = len(right)
     rows = np.arange(0, size * size + 1, size, dtype=PETSc.IntType)
     columns = np.tile(np.arange(size, dtype=PETSc.IntType), size)
     A = PETSc.Mat().createAIJ((size, size), csr=(rows, columns, matrix.reshape(-1)), comm=MPI.COMM_SELF)
     A.assemble()
-    return Descent(A, right, lower, upper, None, *friction).minimise()
+    return Descent(A, right, lower, upper, None, *friction)
+
+
+def descend(matrix, right, lower, upper, *friction):
+    return descent(matrix, right, lower, upper, *friction).minimise()
 
 
 def enumerated(matrix, right, lower, upper):
@@ -170,3 +176,23 @@ def test_rounding_of_the_energy_is_told(solve):
         # The strain of the stiff block is worth about 2 / ratio; the estimate is one of size.
         assert abs(energy - limit) < 10.0 * rounding + 4e-8
         assert rounding < 1e-17 * ratio
+
+
+def coupled(matrix, right, lower, upper, row, bound):
+    """The minimum with ``bound`` |row·w|, and the force along the row."""
+    rows = Rows.of(sparse.csr_matrix([row]), np.array([bound]), np.zeros(1))
+    found, forces = CoupledDescent(descent(matrix, right, lower, upper), rows).minimise(CLOSED)
+    return found, float(forces[0])
+
+
+MATRIX = np.array([[1.0, 0.3, -0.2, 0.1], [0.3, 1.0, 0.25, -0.1], [-0.2, 0.25, 1.0, 0.4], [0.1, -0.1, 0.4, 1.0]])
+
+
+@pytest.mark.parametrize("slip", (1e-9, -3e-7))
+def test_a_row_whose_unknowns_are_all_held_slides_with_its_bound(slip):
+    """Rounds that add a stiffness times the slip would take a thousand million of them to arrive at it."""
+    held = np.array([0.2, 0.2 - slip, 1.0, 0.5])
+    lower = np.array([0.2, 0.2 - slip, -np.inf, -np.inf])
+    found, force = coupled(MATRIX, MATRIX @ held, lower, np.where(np.isfinite(lower), lower, np.inf), [1.0, -1.0, 0.0, 0.0], 0.7)
+    assert force == pytest.approx(math.copysign(0.7, slip), rel=1e-12)
+    assert found.w == pytest.approx(held, rel=1e-9)

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::bounds::{bernstein, holds, of_pair};
-use crate::compare::solution::{Sites, place};
+use crate::compare::solution::{Sites, written_place};
 use crate::compare::{Candidate, Judged};
 use crate::problem::{ContactPair, Problem};
 
@@ -42,7 +42,7 @@ impl Place {
         let named = (0..mesh.edges.len()).filter(at_edge).filter_map(|e| mesh.edges[e].name);
         let body = triangle.map_or(String::new(), |t| problem.scene.bodies[mesh.body[t]].name.clone());
         Place {
-            at: problem.scene.as_written(place(problem, node)),
+            at: written_place(problem, node),
             vertex,
             triangle,
             body,

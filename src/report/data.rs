@@ -298,6 +298,18 @@ pub struct Provenance {
     pub seconds: std::collections::BTreeMap<String, f64>,
 }
 
+/// A displacement by its values at nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Given {
+    /// The name of the model.
+    pub name: String,
+    /// True if it is one on the quadrilaterals of the mesh file.
+    pub on_quadrilaterals: bool,
+    /// Values at vertices, and at edge middles behind them where it is quadratic; that of a diagonal of a quadrilateral is the one in the
+    /// centre.
+    pub values: Vec<[f64; 2]>,
+}
+
 /// Everything a run produced: the report and the fields behind its pictures.
 #[derive(Debug)]
 pub struct Dossier<'a> {
@@ -309,9 +321,8 @@ pub struct Dossier<'a> {
     pub dual: Option<&'a DualSolution>,
     /// Displacements by name; the first is the free upper bound where there is one.
     pub displacements: Vec<(String, &'a Displacement)>,
-    /// Linear and quadratic displacements that were held against the bound, by name, as they were given: values at vertices, and
-    /// at edge middles behind them where they are quadratic.
-    pub given: Vec<(String, Vec<[f64; 2]>)>,
+    /// Linear and quadratic displacements that were held against the bound, as they were given.
+    pub given: Vec<Given>,
     /// The stress half-way between λ_h and that of the best displacement.
     pub mid: Option<&'a StressField>,
     /// Stresses of the displacement models, by name.

@@ -8,9 +8,11 @@ mod friction;
 mod sheet;
 
 use super::Dossier;
+use super::data::Given;
 use super::lattice::Lattice;
 use crate::compare::von_mises_of;
 use crate::element::geometry::sub_corners;
+use crate::mesh::Quadrilateral;
 use crate::problem::Problem;
 use friction::OnTriangles;
 pub(super) use sheet::shortened;
@@ -33,8 +35,9 @@ const VECTOR: [&str; 3] = ["X", "Y", "Z"];
 /// symmetric tensors with six named components; `von_mises` and `mean_stress` (tr σ / 3) of λ_h; `displacement_…` of every model
 /// and the rigid `motion` where there is one. Cell data: `triangle`, `body`, `degree` of the stresses where it is not one
 /// everywhere, `cell` where the mesh file has quadrilaterals, `friction_state`, `tangential_traction` and `friction_bound` where contacts have friction, and the maps. Field data: `scene` and `scene_sha256`, as UTF-8; and of linear and quadratic models what can be handed in again:
-/// `nodes`, vertices and edge middles of the mesh, `nodes_of_triangles`, three corners and the middles between them, the corners of quadrilaterals, and the
-/// values of `displacement_…` at as many of these nodes as it has; not in files for looking at.
+/// `nodes`, vertices and edge middles of the mesh, `nodes_of_triangles`, three corners and the middles between them, `nodes_of_quadrilaterals`, and the
+/// values of `displacement_…`, or on quadrilaterals `quadrilateral_displacement_…`, at as many of these nodes as it has; not in files for
+/// looking at.
 pub fn vtu(dossier: &Dossier) -> std::io::Result<Vec<u8>> {
     let mesh = &dossier.problem.mesh;
     let run = format!(" run {} ", dossier.report.run);
@@ -91,13 +94,19 @@ fn given(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
     let indices: Vec<u8> = nodes_of.flat_map(|n| (n as i32).to_le_bytes()).collect();
     out.table("nodes_of_triangles", "Int32", 6, mesh.triangles.len(), &indices)?;
     if !mesh.cells.is_empty() {
-        let corners: Vec<[usize; 4]> = mesh.quadrilaterals().map(|cell| cell.corners).collect();
-        let indices: Vec<u8> = corners.as_flattened().iter().flat_map(|n| (*n as i32).to_le_bytes()).collect();
-        out.table("nodes_of_quadrilaterals", "Int32", 4, corners.len(), &indices)?;
+        let middle = |e: usize| mesh.points.len() + e;
+        let nodes_of = |cell: Quadrilateral| {
+            let ([a, b, c, d], sides) = (cell.corners, cell.sides.map(middle));
+            [a, b, c, d, sides[0], sides[1], sides[2], sides[3], middle(cell.diagonal)]
+        };
+        let nodes: Vec<[usize; 9]> = mesh.quadrilaterals().map(nodes_of).collect();
+        let indices: Vec<u8> = nodes.as_flattened().iter().flat_map(|n| (*n as i32).to_le_bytes()).collect();
+        out.table("nodes_of_quadrilaterals", "Int32", 9, nodes.len(), &indices)?;
     }
     let mut names = Vec::new();
-    for (name, values) in &dossier.given {
-        out.table(&unique_key("displacement", name, &mut names), "Float64", 2, values.len(), &bytes(values))?;
+    for Given { name, on_quadrilaterals, values } in &dossier.given {
+        let kind = if *on_quadrilaterals { "quadrilateral_displacement" } else { "displacement" };
+        out.table(&unique_key(kind, name, &mut names), "Float64", 2, values.len(), &bytes(values))?;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::arcs::Arcs;
 use crate::claimed::{certified, check};
 use crate::command::{ended, hypercircle, run};
 use hypercircle::primal::exchange::write_problem;
@@ -89,19 +90,24 @@ fn python() -> PathBuf {
 
 /// As [`prepared`], with Coulomb friction of this coefficient.
 fn prepared_with(folder: &Path, names: &[&str], mu: Option<&str>) -> bool {
+    let coulomb = |mu: &str| {
+        SCENE.replace("bound = [[0, 0.005], [1, 0.015]]", &format!("coefficient = {mu}")).replace("0.125", "0.25")
+    };
+    prepared_on(folder, &mu.map_or(SCENE.to_string(), coulomb), &["1", "2"], names, mu)
+}
+
+/// Writes a scene and its fields of these degrees; `false` where numpy or scipy is missing.
+fn prepared_on(folder: &Path, scene: &str, degrees: &[&str], names: &[&str], mu: Option<&str>) -> bool {
     let python = python();
     if !Command::new(&python).args(["-c", "import numpy, scipy.sparse"]).output().is_ok_and(|o| o.status.success()) {
         eprintln!("skipped: {} has no numpy and scipy", python.display());
         return false;
     }
-    let coulomb = |mu: &str| {
-        SCENE.replace("bound = [[0, 0.005], [1, 0.015]]", &format!("coefficient = {mu}")).replace("0.125", "0.25")
-    };
-    std::fs::write(folder.join("scene.toml"), mu.map_or(SCENE.to_string(), coulomb)).expect("writable");
+    std::fs::write(folder.join("scene.toml"), scene).expect("writable");
     let problem = Problem::load(Scene::read(&folder.join("scene.toml")).expect("a scene")).expect("a mesh");
     write_problem(&problem.where_friction_acts(), &[], folder).expect("writable");
     let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/support/displacement/friction.py");
-    for degree in ["1", "2"] {
+    for degree in degrees {
         let target = folder.join(format!("P{degree}"));
         std::fs::create_dir(&target).expect("writable");
         let mut command = Command::new(&python);
@@ -153,6 +159,23 @@ fn every_mistake_is_named(fields: &[(&str, Option<Explained>)], mu: Option<&str>
         // All other equations of the field are those of a solution.
         for other in ["residual", "supports", "reactions", "energy-identity"] {
             assert!(check(&report, &format!("solution/{other}"))["passed"] == true, "{degree} {name} {other}");
+        }
+    }
+}
+
+#[test]
+fn wrong_shares_of_friction_along_a_curve_are_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = Arcs { n: 8, ..Arcs::default() }.text() + "friction = { bound = 0.1 }\n";
+    if !prepared_on(folder.path(), &scene, &["2"], &["right", "frictionless", "thirds"], None) {
+        return;
+    }
+    for (name, passes) in [("right", true), ("frictionless", false), ("thirds", false)] {
+        let (code, report) = certified(folder.path(), &format!("P2/{name}"), &[]);
+        assert_eq!(code, i32::from(!passes), "{name}: {}", report["verdict"]);
+        assert_eq!(check(&report, "solution/contact/lower|upper/friction")["passed"], passes, "{name}");
+        for other in ["residual", "supports", "reactions", "energy-identity"] {
+            assert!(check(&report, &format!("solution/{other}"))["passed"] == true, "{name} {other}");
         }
     }
 }

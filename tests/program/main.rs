@@ -1,5 +1,8 @@
 //! The program, called as a user calls it, without FEniCSx but where a test says so.
 
+#[allow(dead_code)]
+#[path = "../support/arcs.rs"]
+mod arcs;
 mod calculix_results;
 mod carried_fields;
 mod cases;
@@ -21,6 +24,8 @@ mod friction;
 mod hostile;
 mod jobs;
 mod labels;
+#[path = "../support/lame.rs"]
+mod lame;
 #[path = "../malformed/mod.rs"]
 mod malformed;
 mod malformed_meshes;

@@ -363,8 +363,7 @@ impl<'a> Solution<'a> {
 impl Candidate {
     /// A node as a message names it: its number in the file it comes from, from one, and its coordinates.
     pub fn named(&self, problem: &Problem, node: usize) -> String {
-        let extent = problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let [x, y] = problem.scene.as_written(place(problem, node)).map(|x| round(x, extent));
+        let [x, y] = written_place(problem, node).map(|x| round(x, extent(problem)));
         match self.numbering.as_ref().and_then(|n| n.point(node)) {
             Some(point) => format!("{point}, at ({x}, {y})"),
             None => format!("({x}, {y})"),
@@ -384,9 +383,20 @@ pub fn place(problem: &Problem, node: usize) -> [f64; 2] {
     }
 }
 
+/// The same as the files of the scene have them; what is zero but for rounding is zero.
+pub fn written_place(problem: &Problem, node: usize) -> [f64; 2] {
+    let none = ROUND_OFF * extent(problem);
+    problem.scene.as_written(place(problem, node)).map(|x| if x.abs() < none { 0.0 } else { x })
+}
+
+/// The largest coordinate of the mesh.
+fn extent(problem: &Problem) -> f64 {
+    problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()))
+}
+
 /// `x` to six digits of `extent`, for a message; no negative zero.
 fn round(x: f64, extent: f64) -> f64 {
     let step = 10f64.powi(extent.max(f64::MIN_POSITIVE).log10().ceil() as i32 - 6);
     let rounded = (x / step).round() / (1.0 / step).round().max(1.0 / step);
-    if rounded.abs() < ROUND_OFF * extent { 0.0 } else { rounded }
+    if rounded == 0.0 { 0.0 } else { rounded }
 }

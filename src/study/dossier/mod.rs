@@ -18,7 +18,8 @@ use crate::dual::Motion;
 use crate::element::Displacement;
 use crate::problem::{Note, Problem, follows_coulomb};
 use crate::report::{
-    Dossier, DualSummary, Energy, Guarantee, GuaranteeLevel, HistoryRow, PrimalSummary, Report, SCHEMA_VERSION, Status,
+    Dossier, DualSummary, Energy, Given, Guarantee, GuaranteeLevel, HistoryRow, PrimalSummary, Report, SCHEMA_VERSION,
+    Status,
 };
 use maps::Fields;
 use provenance::{identifier, provenance};
@@ -77,11 +78,16 @@ pub fn assemble<'a>(findings: Findings<'a>, fields: &'a Fields) -> Dossier<'a> {
     let mesh = &problem.mesh;
     let candidates = findings.comparison.judged.iter().map(|judged| &judged.candidate);
     let fitting = candidates.filter(|own| {
-        own.higher.is_none() && [own.vertex.len(), own.middle.len()] == [mesh.points.len(), mesh.edges.len()]
+        let at_nodes = own.higher.is_none() || own.on_quadrilaterals.is_some();
+        at_nodes && [own.vertex.len(), own.middle.len()] == [mesh.points.len(), mesh.edges.len()]
     });
     let given = fitting.map(|own| {
         let middle = if own.degree == 2 { own.middle.as_slice() } else { &[] };
-        (own.name.clone(), [own.vertex.as_slice(), middle].concat())
+        Given {
+            name: own.name.clone(),
+            on_quadrilaterals: own.on_quadrilaterals.is_some(),
+            values: [own.vertex.as_slice(), middle].concat(),
+        }
     });
     Dossier {
         report,

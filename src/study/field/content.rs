@@ -43,6 +43,16 @@ struct Content {
     cells: Vec<Vec<usize>>,
     others: Vec<String>,
     fields: BTreeMap<String, Data>,
+    /// What a file of this program has on quadrilaterals.
+    #[serde(default)]
+    on_quadrilaterals: Option<OnQuadrilaterals>,
+}
+
+#[derive(Deserialize)]
+struct OnQuadrilaterals {
+    points: Vec<Vec<Option<f64>>>,
+    cells: Vec<Vec<usize>>,
+    fields: BTreeMap<String, Data>,
 }
 
 #[derive(Deserialize)]
@@ -103,8 +113,15 @@ impl ForeignField {
             return Err(FieldError { file: name.into(), what, remedy });
         }
         let fields = BTreeMap::from([("displacement".to_string(), Data { values: Some(values), single })]);
-        let content =
-            Content { points: finite(points), single: false, own: false, cells: triangles, others: Vec::new(), fields };
+        let content = Content {
+            points: finite(points),
+            single: false,
+            own: false,
+            cells: triangles,
+            others: Vec::new(),
+            fields,
+            on_quadrilaterals: None,
+        };
         Self::checked(content, Path::new(name), sha256, None)
     }
 
@@ -121,12 +138,18 @@ impl ForeignField {
             return Err(fault("there is no triangle and no quadrilateral in it".into(), INSTEAD));
         }
         lay_down(&mut content);
+        let wanted = |on: &mut OnQuadrilaterals| {
+            content.fields.is_empty() || name.is_some_and(|name| on.fields.contains_key(name))
+        };
+        if let Some(on) = content.on_quadrilaterals.take_if(wanted) {
+            (content.points, content.cells, content.fields) = (on.points, on.cells, on.fields);
+        }
         let (name, data) = choose(&content.fields, name).map_err(|(what, remedy)| fault(what, remedy))?;
         let rows = data.values.as_deref().unwrap_or_default();
         if content.own && rows.len() < content.points.len() {
             // A linear field: vertices come first.
             content.points.truncate(rows.len());
-            content.cells.iter_mut().for_each(|nodes| nodes.truncate(3));
+            content.cells.iter_mut().for_each(|nodes| nodes.truncate(if nodes.len() == 6 { 3 } else { 4 }));
         }
         let points: Option<Vec<[f64; 2]>> = content.points.iter().map(|p| plane(p)).collect();
         let Some(points) = points else {

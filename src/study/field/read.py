@@ -23,7 +23,7 @@ def missing(error):
 
 
 def given(mesh):
-    """The mesh and the displacements that fields.vtu keeps beside what it shows; nothing in other files."""
+    """The mesh and the displacements that fields.vtu keeps beside what it shows, and what has those on quadrilaterals; nothing in other files."""
     arrays = dict(mesh.field_data)
     nodes, triangles = arrays.pop("nodes", None), arrays.pop("nodes_of_triangles", None)
     if "scene_sha256" not in arrays:
@@ -34,11 +34,23 @@ def given(mesh):
     return nodes, [meshio.CellBlock("triangle6", triangles)], fields, True
 
 
+def given_on_quadrilaterals(mesh):
+    """Points, cells and fields of the same file that stand on quadrilaterals; nothing where it has none."""
+    begin = "quadrilateral_"
+    fields = {name.removeprefix(begin): values for name, values in mesh.field_data.items() if name.startswith(begin + "displacement_")}
+    if not fields:
+        return None
+    points, cells = mesh.field_data["nodes"].copy(), mesh.field_data["nodes_of_quadrilaterals"]
+    # Their last node, in the place of the middle of a diagonal, is the centre.
+    points[cells[:, 8]] = points[cells[:, :4]].mean(axis=1)
+    return {"points": rows(points), "cells": cells.tolist(), "fields": as_data(fields)}
+
+
 def read():
-    """Points, cell blocks, point data, and whether it is a file of this program; of a time series the last step."""
+    """Points, cell blocks, point data, whether it is a file of this program, and its fields on quadrilaterals; of a time series the last step."""
     own = own_fields(source)
     if own is not None:
-        return own
+        return *own, None
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
@@ -50,7 +62,8 @@ def read():
     except (Exception, SystemExit) as error:
         lines = [line.strip() for line in said.getvalue().splitlines() if line.strip()]
         sys.exit(str(error) if isinstance(error, Exception) and str(error) else (lines or ["no message"])[0])
-    return given(mesh) or (mesh.points, mesh.cells, mesh.point_data, False)
+    own = given(mesh)
+    return (*own, given_on_quadrilaterals(mesh)) if own else (mesh.points, mesh.cells, mesh.point_data, False, None)
 
 
 def rows(array):
@@ -74,7 +87,19 @@ def scalars_joined(data):
     return {**joined, **data}
 
 
-points, cells, data, own = read()
+def as_data(arrays):
+    """What is told of arrays at points: rows of those of two or three components, and which have single precision."""
+    told = {}
+    for name, values in arrays.items():
+        vector = values.ndim == 2 and values.shape[1] in (2, 3) and values.dtype.kind in "fiu"
+        told[name] = {
+            "values": rows(values) if vector else None,
+            "single": values.dtype.kind == "f" and values.dtype.itemsize < 8,
+        }
+    return told
+
+
+points, cells, data, own, on_quadrilaterals = read()
 # Nodes of a cell: corners, the middles of the sides from corner to corner, the centre of a quadrilateral.
 shapes = {"triangle": 3, "triangle6": 6, "quad": 4, "quad8": 8, "quad9": 9}
 kept, others = [], []
@@ -84,13 +109,6 @@ for block in cells:
         kept.extend(nodes.tolist())
     elif block.type not in ("vertex", "line", "line3"):
         others.append(block.type)
-fields = {}
-for name, values in scalars_joined(data).items():
-    vector = values.ndim == 2 and values.shape[1] in (2, 3) and values.dtype.kind in "fiu"
-    fields[name] = {
-        "values": rows(values) if vector else None,
-        "single": values.dtype.kind == "f" and values.dtype.itemsize < 8,
-    }
 with open(target, "w", encoding="utf-8") as out:
     json.dump({
         "points": rows(points),
@@ -98,5 +116,6 @@ with open(target, "w", encoding="utf-8") as out:
         "own": own,
         "cells": kept,
         "others": others,
-        "fields": fields,
+        "fields": as_data(scalars_joined(data)),
+        "on_quadrilaterals": on_quadrilaterals,
     }, out)

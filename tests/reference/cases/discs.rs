@@ -1,7 +1,9 @@
 //! A disc in its bore: it turns freely, and rests where it is pressed through its centre. A ring on a pin, which turns freely about the
 //! centre of both alone.
 
-use super::run::{Run, with_reference};
+use std::f64::consts::PI;
+
+use super::run::{Run, close, with_reference};
 use crate::arcs::{disc, ring_on_pin};
 
 fn written(text: &str) -> (tempfile::TempDir, std::path::PathBuf) {
@@ -57,6 +59,25 @@ fn on_a_pin_beside_its_centre_both_models_agree() {
         let run = Run::new(if with_reference() { "verify" } else { "solve" }, &scene, &[]);
         assert_eq!(run.code, Some(0), "{centre:?}: {}{}", run.stdout, run.stderr);
     }
+}
+
+/// Friction carries nothing, and along the contact displacements are rounding errors of those elsewhere. Of Lamé: σ_r = A − B/r² with no
+/// displacement at the pin, B = −(1 − 2ν) A, and −p at the rim.
+#[test]
+fn pressed_on_its_pin_all_around_it_sticks() {
+    if !with_reference() {
+        return;
+    }
+    let text = ring_on_pin([0.0; 2]).replace("radius = 1.01", "radius = 1.0")
+        + "friction = { bound = 0.01 }\n[[tractions]]\non = \"rim\"\npressure = 0.1\n";
+    let (_folder, scene) = written(&text);
+    let run = Run::new("verify", &scene, &[]);
+    assert_eq!(run.code, Some(0), "{}{}", run.stdout, run.stderr);
+    let (young, nu, pressure) = (1.0, 0.3, 0.1);
+    let a = -pressure / (1.0 + (1.0 - 2.0 * nu) / 4.0);
+    let moved = (1.0 + nu) / young * (1.0 - 2.0 * nu) * a * (2.0 - 0.5);
+    // The polygon has 1.1 % less area than the disc.
+    close(run.report().number("/energy/lower"), 0.5 * pressure * 2.0 * PI * 2.0 * moved, 0.02);
 }
 
 /// Linear displacements meet contact at vertices alone where it turns: their energy with Coulomb friction may lie below that of none.

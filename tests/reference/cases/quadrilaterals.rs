@@ -119,6 +119,18 @@ fn distorted_quadrilaterals_have_an_energy_and_bound_nothing() {
         let energy = model["energy"].as_f64().expect("an energy");
         assert!((-1.7964189504..-1.75).contains(&energy), "{model}");
     }
+    // Handed in again they are solutions, and of no other scene.
+    let fields = run.folder.path().join("out/fields.vtu");
+    let fields = fields.to_str().expect("a path");
+    let stiffer = scene.with_file_name("stiffer.toml");
+    let text = std::fs::read_to_string(&scene).expect("the scene").replacen("young = 1.0", "young = 1.01", 1);
+    std::fs::write(&stiffer, text).expect("written");
+    for (scene, code) in [(&scene, 0), (&stiffer, 1)] {
+        for model in ["displacement_FEniCSx_Q1", "displacement_FEniCSx_Q2"] {
+            let claimed = Run::new("certify", scene, &["--displacement", fields, "--field", model, "--solution"]);
+            assert_eq!(claimed.code, Some(code), "{model}: {}{}", claimed.stdout, claimed.stderr);
+        }
+    }
 }
 
 #[test]

@@ -43,8 +43,10 @@ class Rubbing(Model):
             keys.append(tuple(None if e is None else self.vertices + e for e in pair["edges"]))
             parts, bounds = [1 / 6, 1 / 6, 4 / 6], [s / 6, t / 6, (s + t) / 3]
         self.sides.append((keys, whole, (s, t)))
-        for key, part, bound in zip(keys, parts, bounds):
-            place = self.places.setdefault(key, [np.array(pair["normal"]), np.array(friction["tangent"][0]), 0.0, 0.0])
+        # Where contact turns, its direction is linear between vertices, and has its mean at midpoints.
+        normals, tangents = ([*ends, np.mean(ends, axis=0)] for ends in np.array([pair["direction"], friction["tangent"]]))
+        for key, part, bound, normal, tangent in zip(keys, parts, bounds, normals, tangents):
+            place = self.places.setdefault(key, [normal, tangent, 0.0, 0.0])
             place[2] += whole * bound
             place[3] += whole * part
 
@@ -153,6 +155,15 @@ def turned(model):
     return model.rubbed(limit=limit)
 
 
+def thirds(model):
+    """What a side may resist in three equal shares, in place of 1/6, 1/6 and 4/6: a sum that is right of parts that are not."""
+    limit, keys = np.zeros(len(model.places)), {key: i for i, key in enumerate(model.places)}
+    for own, whole, (s, t) in model.sides:
+        for key in own:
+            limit[keys[key]] += whole * (s + t) / 6
+    return model.rubbed(limit=limit)
+
+
 def coulomb(model, mu, law="exact", times=1.0, solutions=200):
     """Limits ``times`` ``mu`` as large as contact forces, from solution to solution; with few of them they lag behind."""
     model.limit = np.zeros(len(model.places))
@@ -188,6 +199,7 @@ WAYS = {
     "bound_half": lambda model: model.rubbed(times=0.5),
     "bound_more": lambda model: model.rubbed(times=1.3),
     "turned": turned,
+    "thirds": thirds,
     "penalty": lambda model: model.rubbed(penalty),
     "tanh": lambda model: model.rubbed(tanh),
     "root": lambda model: model.rubbed(root),

@@ -2,11 +2,14 @@
 
 use super::Along;
 use super::rubbing::ABOVE;
-use crate::compare::solution::{Ask, Rubbed};
+use crate::compare::solution::{Ask, Rubbed, SOLVER};
 use crate::diagnose::Finding;
 use crate::diagnose::words::{near, times as in_words};
 use crate::problem::{ContactPair, Friction};
 use crate::scene::counted;
+
+/// By how much more than what it leaves, or than a solver leaves, a small mistake of a bound has to explain.
+const SURE: f64 = 10.0;
 
 impl Along<'_> {
     /// The mistake in the bound of friction, imposed at nodes or in coefficients.
@@ -36,7 +39,10 @@ impl Along<'_> {
         let size: f64 = sliding.iter().map(|r| r.force * r.force).sum();
         let within = |r: &Rubbed| r.slip.abs() > sticks || r.force.abs() <= (times.abs() + ABOVE) * r.limit;
         let follows = (miss / size).sqrt() <= ABOVE && rubbed.iter().all(within);
-        if !follows || (times - 1.0).abs() <= ABOVE {
+        // A small mistake is one where nothing else is wrong, and it has to explain what is missed.
+        let alone = self.solution.residual() <= self.solution.allowed();
+        let least = if alone { (SURE * (miss / size).sqrt()).max(SURE * SOLVER) } else { ABOVE };
+        if !follows || (times - 1.0).abs() <= least {
             return None;
         }
         if near(times, -1.0) {
