@@ -69,6 +69,14 @@ def raised(b, degree):
     return b if len(b) > degree else times([1] * (degree + 2 - len(b)), b)
 
 
+def halves(b):
+    """The polynomial on both halves of the interval, each from 0 to 1 (de Casteljau)."""
+    left, right = [], []
+    while b:
+        left, right, b = [*left, b[0]], [b[-1], *right], [(x + y) / 2 for x, y in zip(b, b[1:])]
+    return left, right
+
+
 def by_component(f, vectors):
     """f of both components of a polynomial whose coefficients are vectors."""
     return list(zip(*(f(list(component)) for component in zip(*vectors))))

@@ -1,11 +1,12 @@
 """The lower bound: an admissible stress near the candidate, and its energy.
 
 1. On every edge the scaled traction tau(s) = length times traction, as seen from the triangle on its left, is a polynomial in s: the load where
-   there is one, b(s) n(s) on a joint of one direction (b <= 0 where it can only press), and the candidate on inner edges and those with
-   two joints. A triangle is in equilibrium if the forces and moments about the origin of its edges add up to zero with those of its body force.
+   there is one, b(s) n(s) on a joint of one direction (b <= 0 where it can only press), the sum of two such on a contact with friction, of
+   which the second, along the contact, lies between its bounds, and the candidate on inner edges and others with two joints. A triangle is
+   in equilibrium if the forces and moments about the origin of its edges add up to zero with those of its body force.
 2. What is missing is passed on along trees of triangles that are rooted at edges held in both directions; the edge to the parent takes it. Bodies
-   without such an edge are first brought into balance as a whole by the b of closed contacts and rollers, the solution of a linear system. The
-   traction of the proof is *defined* as that for which every balance holds; the balls of the arithmetic enclose it.
+   without such an edge are first brought into balance as a whole by the b of closed contacts, of friction and of rollers, the solution of a
+   linear system. The traction of the proof is *defined* as that for which every balance holds; the balls of the arithmetic enclose it.
 3. In each triangle some stress has these tractions (`reference`); its energy is enclosed.
 """
 
@@ -38,17 +39,15 @@ HIGHEST = 24  # Degrees beyond this have no use, and matrices that fill the memo
 class Stress:
     def __init__(self, mesh, data):
         self.mesh, self.extra = mesh, arb(0)
-        counts, values = data["traction_counts"].astype(int), data["tractions"]
-        pair_counts, pressures, self.degrees = data["pressure_counts"].astype(int), data["pressures"], data["stress_degrees"].tolist()
-        contacts = [joint for joint in mesh.joints if joint.presses]
-        sizes = [len(x) for x in (counts, values, pair_counts, pressures, self.degrees)]
-        if sizes != [len(mesh.edges), counts.sum(), len(contacts), pair_counts.sum(), len(mesh.triangles)] or counts.min() < 2:
-            raise Refused("the proof does not have a traction for every edge and contact pair")
+        counts, values, self.degrees = data["traction_counts"].astype(int), data["tractions"], data["stress_degrees"].tolist()
+        sizes = [len(x) for x in (counts, values, self.degrees)]
+        if sizes != [len(mesh.edges), counts.sum(), len(mesh.triangles)] or counts.min() < 2:
+            raise Refused("the proof does not have a traction for every edge")
         if max(self.degrees) > HIGHEST:
             raise Refused(f"the proof has a stress of degree {max(self.degrees)}; none is above {HIGHEST}")
-        if not np.isfinite(values).all() or not np.isfinite(pressures).all():
+        if not np.isfinite(values).all():
             raise Refused("a traction of the proof is no number")
-        self._candidates(np.split(values, np.cumsum(counts)[:-1]), contacts, np.split(pressures, np.cumsum(pair_counts)[:-1]))
+        self._candidates(np.split(values, np.cumsum(counts)[:-1]), data)
         self.scale = max(max(abs(float(x)) for tau in self.tau for c in tau for x in c), self.resting)
         # Balances are counted in a unit that makes all weights whole: sums of doubles then have no error.
         self.unit = 24 * lcm(*range(1, max(map(len, self.tau)) + 2))
@@ -63,7 +62,20 @@ class Stress:
 
     # 1. Tractions of edges.
 
-    def _candidates(self, values, contacts, pressures):
+    def _of_contacts(self, data):
+        """(number of its pair, joint, b of the proof) of the joints of contacts: those that press, then those with friction."""
+        pairs = {joint.edges: k for k, joint in enumerate(joint for joint in self.mesh.joints if joint.presses)}
+        for what, of in (("pressure", lambda joint: joint.presses), ("friction", lambda joint: joint.bound)):
+            if joints := [joint for joint in self.mesh.joints if of(joint)]:
+                counts, values = data[f"{what}_counts"].astype(int), data["pressures" if what == "pressure" else "frictions"]
+                if [len(counts), len(values)] != [len(pairs), counts.sum()]:
+                    raise Refused(f"the proof does not have a {what} for every contact pair")
+                if not np.isfinite(values).all():
+                    raise Refused(f"a {what} of the proof is no number")
+                own = np.split(values, np.cumsum(counts)[:-1])
+                yield from ((pairs[joint.edges], joint, own[pairs[joint.edges]].tolist() or [0.0]) for joint in joints)
+
+    def _candidates(self, values, data):
         """Sets tau and b from the proof, and the number of directions in which the traction of an edge is unknown."""
         mesh = self.mesh
         lengths = np.hypot(*(mesh.points[mesh.edges[:, 1]] - mesh.points[mesh.edges[:, 0]]).T)
@@ -71,19 +83,22 @@ class Stress:
         strained = ((mesh.scene.laws[mesh.body(t)][1], e) for t in range(len(mesh.triangles)) if (e := mesh.corners(mesh.scene.strains, t)))
         stress = max((abs(float(x)) for stiffness, e in strained for x in (stiffness * arb_mat(e)).entries()), default=0.0)
         self.resting = stress * lengths.max()
-        largest = max(stress, *(np.abs(x).max(initial=0.0) for x in (*values, *pressures)))
-        for k, (joint, own) in enumerate(zip(contacts, pressures)):
-            if own.max(initial=0.0) > ROUNDING * largest:
-                raise Refused(f"the contact traction of pair {k} pulls: {own.max():.3e} is above zero")
-            joint.pressure = [arb(min(b, 0.0)) for b in own.tolist()]
+        contacts = list(self._of_contacts(data))
+        largest = max(stress, *(np.abs(x).max(initial=0.0) for x in values), *(abs(b) for *_, own in contacts for b in own))
+        for k, joint, own in contacts:
+            limits = joint.limits(len(own))
+            beyond = max(max(float(low - b), float(b - high)) for b, (low, high) in zip(own, limits))
+            if beyond > ROUNDING * largest:
+                what = "contact traction of pair {k} pulls" if joint.presses else "friction of pair {k} is above its bound"
+                raise Refused(f"the {what.format(k=k)}, by {beyond:.3e}")
+            joint.pressure = [max(low, min(arb(b), high)) for b, (low, high) in zip(own, limits)]
         self.directions = [2 if left >= 0 and right >= 0 else 0 for left, right in mesh.owners.tolist()]
         for joint in mesh.joints:
-            self.directions[joint.edges[0]] += 1
-            if joint.presses and joint.edges[1] >= 0:
-                self.directions[joint.edges[1]] += 1
+            for e in (e for e in joint.edges[: 1 + joint.limited] if e >= 0):
+                self.directions[e] = 1 if joint.limited else self.directions[e] + 1
         self.single = [joint for joint in mesh.joints if self.directions[joint.edges[0]] == 1]
         for joint in self.single:
-            if not joint.presses:
+            if not joint.limited:
                 e, n = joint.edges[0], np.array([float(x) for x in joint.normal[0]])
                 joint.pressure = [arb(b) for b in (values[e] @ n * lengths[e] / (n @ n)).tolist()]
         for e, f, _ in mesh.layers:  # the two sides of a layer become one edge: tractions on them are equal and opposite
@@ -101,9 +116,14 @@ class Stress:
                 yield e, [[sign * x for x in c] for c in (product if start == self.mesh.edges[e, 0] else product[::-1])]
 
     def _set(self):
+        parts = {}
         for joint in self.single:
             for e, tau in self._sides(joint, joint.pressure):
-                self.tau[e] = tau if len(tau) > 1 else tau * 2
+                parts.setdefault(e, []).append(tau)
+        for e, own in parts.items():
+            degree = max(1, *(len(tau) - 1 for tau in own))
+            equal = [by_component(lambda c: raised(c, degree), tau) for tau in own]
+            self.tau[e] = [[sum(x) for x in zip(*vectors)] for vectors in zip(*equal)]
 
     # 2. Balances.
 
@@ -154,9 +174,10 @@ class Stress:
         mesh, total = self.mesh, np.zeros((len(self.roots) + 1, 3), object)
         for t, missing in enumerate(self._residuals()):
             total[self.component[t]] += missing
-        free = [(joint, i) for joint in self.single for i, b in enumerate(joint.pressure) if b < 0 or not joint.presses]
+        within = lambda joint: enumerate(zip(joint.pressure, joint.limits(len(joint.pressure))))
+        free = [(joint, i, *limits) for joint in self.single for i, (b, limits) in within(joint) if limits[0] < b < limits[1]]
         columns = np.zeros((len(free), *total.shape), object)
-        for column, (joint, i) in zip(columns, free):
+        for column, (joint, i, *_) in zip(columns, free):
             for e, tau in self._sides(joint, [fmpq(int(i == j)) for j in range(len(joint.pressure))]):
                 column[self.component[mesh.owners[e, 0]]] += self._acting(e, tau)
         for c, (_, e) in enumerate(self.roots, 1):  # moments about an end of the edge that would take what is left
@@ -172,13 +193,16 @@ class Stress:
         self._set()
 
     def _solve(self, matrix, total, free):
-        """Changes coefficients by the least that balances, relative to their sizes: exactly, or where that makes contacts pull or is more than
-        rounding, nearly, by least squares in floating point. Whether it is exact."""
-        start = b = np.array([joint.pressure[i] for joint, i in free], object)
-        presses, rough = np.array([joint.presses for joint, _ in free]), matrix.astype(float)
+        """Changes coefficients by the least that balances, relative to what their limits leave: exactly, or where that exceeds these or is more
+        than rounding, nearly, by least squares in floating point where these help. Whether it is exact."""
+        start = b = np.array([joint.pressure[i] for joint, i, *_ in free], object)
+        low, high, rough = np.array([own[2] for own in free], object), np.array([own[3] for own in free], object), matrix.astype(float)
         solved, most, missing = False, ROUNDING * max(arb(self.scale), *abs(b)), lambda b: total + matrix @ (b - start)
+        size = np.abs(rough).max(1)
+        worst = lambda b: np.abs(missing(b).astype(float) / size).max()
         for exact in (True, False, False, False, True):
-            room = np.where(presses, abs(b).astype(float), self.scale + 1e-300)
+            room = np.minimum((b - low).astype(float), (high - b).astype(float))
+            room[np.isinf(room)] = self.scale + 1e-300
             if exact:
                 weighted = arb_mat((matrix * balls(room**2)).tolist())
                 try:
@@ -189,12 +213,13 @@ class Stress:
             else:
                 norms = np.sqrt(((rough * room) ** 2).sum(1)) + 1e-300
                 step = np.linalg.lstsq(rough * room / norms[:, None], -missing(b).astype(float) / norms, rcond=1e-10)[0] * room
-                found = np.array([min(x, arb(0)) if press else x for x, press in zip(b + balls(step), presses)], object)
-            if all(abs(found - start) <= most) and all(found[presses] <= 0):
+                found = np.array([max(least, min(x, greatest)) for x, least, greatest in zip(b + balls(step), low, high)], object)
+            better = exact or worst(found) < worst(b)
+            if better and all(abs(found - start) <= most) and all(low <= found) and all(found <= high):
                 b, solved = found, exact
             if solved:
                 break
-        for (joint, i), x in zip(free, b):
+        for (joint, i, *_), x in zip(free, b):
             joint.pressure[i] = x
         return solved
 

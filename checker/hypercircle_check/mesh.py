@@ -6,7 +6,8 @@ import numpy as np
 from flint import arb, fmpq
 
 from . import Refused
-from .exact import cross, dot, length, rational, times
+from .exact import cross, dot, length, lower, raised, rational, times
+from .scene import at
 
 PARALLEL = 1e-9  # edges of one straight roller differ by rounding
 NEAR = 1e-9  # vertices and areas against polygons, relative to the size of the scene
@@ -16,7 +17,8 @@ NEAR = 1e-9  # vertices and areas against polygons, relative to the size of the 
 class Joint:
     """A constraint along one direction on an edge, against the ground or between two edges; s runs from 0 to 1 along it. The jump of
     displacements j = (v' - v'').n equals |n| times the offset, or is at most that where the joint can only press; in a joint with a stiffness
-    the excess costs energy. The traction of the first side, times the length of the edge, is b(s) n(s) with b the unknown."""
+    the excess costs energy, and in one with a bound of friction every jump does. The traction of the first side, times the length of the edge,
+    is b(s) n(s) with b the unknown; that of a contact with friction is the sum of two such, along its direction and along it turned by 90 degrees."""
 
     edges: tuple  # of the first side, of the second or -1
     starts: tuple  # the vertices where s = 0
@@ -26,7 +28,20 @@ class Joint:
     excess: object = 0  # by which the offset of one that presses may be larger
     stiffness: object = None  # None: rigid
     presses: bool = False
+    bound: list = None  # of |b| where there is friction: values at both ends, linear between
     pressure: list = None  # b, where it is not the traction that is unknown
+
+    @property
+    def limited(self):
+        """True if not all tractions along n are admissible."""
+        return self.presses or self.bound is not None
+
+    def limits(self, count):
+        """The least and the largest value of each of so many Bernstein coefficients of b: a polynomial lies between those that its lie between."""
+        if self.bound is None:
+            return [(arb("-inf"), arb(0) if self.presses else arb("inf"))] * count
+        most = raised(self.bound, count - 1) if count > 1 else [min(self.bound)]
+        return [(-lower(x), lower(x)) for x in most]
 
     def along(self, vectors):
         """Bernstein coefficients of the product of a polynomial vector with n."""
@@ -176,6 +191,14 @@ class Mesh:
             n, size = self._contact_direction(e, a, name, data, straight)
             gap, excess = self._gap(contact, name, data, straight)
             yield Joint((e, f), (a, c), n, size, gap, excess, contact.get("stiffness"), True)
+            if table := contact.get("friction"):
+                bound, forward = [at(table, rational(s)) for s in data[5:7]], 1 if a == self.edges[e, 0] else -1
+                yield Joint((e, f), (a, c), [[-forward * y, forward * x] for x, y in n], size, [fmpq(0)], bound=bound)
+                if "move" in contact:
+                    self.premises.append(f"contact {name}: the obstacle moves across itself alone")
+                if len(table) > 1:
+                    self.premises.append(f"contact {name}: the bound of friction is linear between vertices")
+                    self.premises.append(f"contact {name}: arc lengths are those in the proof")
         for e, held in self._outer("contact"):
             if e not in paired:
                 contact = self.scene.contacts[held.data]

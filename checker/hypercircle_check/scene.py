@@ -4,6 +4,8 @@ import copy
 import tomllib
 from dataclasses import dataclass
 
+from flint import fmpq
+
 from . import Refused, material
 from .exact import rational, zero
 
@@ -17,7 +19,8 @@ KNOWN = {  # every key that has a meaning here, and the values of those that nam
     "rotation": "density omega about",
     "supports": "on type displacement direction stiffness",
     "tractions": "on value gradient pressure",
-    "contacts": "between on gap normals direction obstacle move stiffness",
+    "contacts": "between on gap normals direction obstacle move stiffness friction",
+    "friction": "bound",
     "bonds": "between direction stiffness",
     "polygons": "body points edges arcs",
 }
@@ -45,6 +48,34 @@ def stiffnesses(given):
     if len(both) != 2 or min(both) < 0 or not any(both):
         raise Refused(f"a stiffness is {given!r}")
     return both
+
+
+def rows(given):
+    """A function of the arc length along a contact, piecewise linear and nowhere negative: rows [s, value], or one number."""
+    if isinstance(given, list) and not all(isinstance(row, list) for row in given):
+        raise Refused(f"the bound of friction {given!r} is a range: this checker does not know those")
+    table = [[rational(x) for x in row] for row in (given if isinstance(given, list) else [[0, given]])]
+    if any(s >= t for (s, _), (t, _) in zip(table, table[1:])) or min(value for _, value in table) < 0:
+        raise Refused(f"a bound of friction is {given!r}")
+    return table
+
+
+def at(table, s):
+    """The value of such a function, constant beyond its first and last row."""
+    for (a, x), (b, y) in zip(table, table[1:]):
+        if s < b:
+            return x + (y - x) * max(s - a, 0) / (b - a)
+    return table[-1][1]
+
+
+def slides(contact):
+    """True if an obstacle moves along itself, and would drag what rubs on it."""
+    move, line = vector(contact.get("move", [0, 0])), contact.get("obstacle", {}).get("line")
+    if line is None:
+        return any(move)
+    (x, y), (u, v) = map(vector, line)
+    along, across = move[0] * (u - x) + move[1] * (v - y), move[1] * (u - x) - move[0] * (v - y)
+    return abs(along) > fmpq(1, 10**11) * abs(across)
 
 
 @dataclass
@@ -119,6 +150,10 @@ class Scene:
                 name = "|".join([*sides, "rigid"][:2])
                 read = stiffnesses if place == "bonds" else rational
                 own[name] = joint | ({"stiffness": read(joint["stiffness"])} if "stiffness" in joint else {})
+                if "friction" in joint:
+                    own[name] |= {"friction": rows(known("friction", joint["friction"])["bound"])}
+                    if slides(joint):
+                        raise Refused(f"the obstacle of contact {name} moves along itself, which this checker does not know with friction")
                 for side, boundary in enumerate(sides):
                     self._hold(boundary, Condition(place[:-1], name))
                     self.sides[boundary] = (name, side)

@@ -3,13 +3,14 @@
 The candidate has a value at every vertex, inner Bernstein coefficients on every edge in a degree of its own, and coefficients inside every
 triangle: it is continuous whatever the numbers are. Those on supports are replaced by what the support prescribes, and those on
 contacts moved until no Bernstein coefficient of (v' - v'').n - |n| g is above zero, in rational numbers; changes of the size of rounding.
+Along contacts with friction it may slide as it likes: that costs the bound times the distance.
 """
 
 import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from . import Refused, reference
-from .exact import by_component, cross, dot, lower, mean, raised, rational, times, upper
+from .exact import by_component, cross, dot, halves, lower, mean, raised, rational, times, upper
 from .lower import load
 
 ROUNDING = 1e-7  # changes beyond this part of the largest displacement are no rounding
@@ -24,10 +25,14 @@ def positive_square(b, depth=40):
     if min(b) >= 0 or not depth:
         positive = [max(x, fmpq(0)) for x in b]
         return mean(times(positive, positive))
-    left, right, row = [], [], b
-    while row:
-        left, right, row = [*left, row[0]], [row[-1], *right], [(x + y) / 2 for x, y in zip(row, row[1:])]
-    return (positive_square(left, depth - 1) + positive_square(right, depth - 1)) / 2
+    return sum(positive_square(half, depth - 1) for half in halves(b)) / 2
+
+
+def absolute(b, weight, depth=40):
+    """At least int_0^1 weight |x| of a polynomial x by its Bernstein coefficients, and hardly more; the weight is nowhere negative."""
+    if min(b) >= 0 or max(b) <= 0 or not depth:
+        return mean(times([abs(x) for x in b], weight))
+    return sum(absolute(*both, depth - 1) for both in zip(halves(b), halves(weight))) / 2
 
 
 class Displacement:
@@ -78,7 +83,7 @@ class Displacement:
     def _supports(self):
         held = {}
         for joint in self.mesh.joints:
-            if joint.stiffness is None and not joint.presses:
+            if joint.stiffness is None and not joint.limited:
                 nodes, size = self.nodes(joint.edges[0], joint.starts[0]), joint.length.mid().fmpq()
                 if not joint.length.is_exact() and any(joint.offset):
                     self.mesh.premises.append("a displacement prescribed along a sloped direction is taken to 96 decimal places")
@@ -163,6 +168,8 @@ class Displacement:
             if joint.stiffness:
                 square = positive_square(self._beyond(joint)) if joint.presses else mean(times(jump := self._jump(joint), jump))
                 total += upper(joint.stiffness * square / (2 * joint.length))
+            if joint.bound:
+                total += upper(absolute(self._jump(joint), joint.bound))
         return upper(total * mesh.scene.thickness)
 
     def _energy(self, t, k):

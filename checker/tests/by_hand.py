@@ -11,35 +11,41 @@ BLOCKS = """
 model = {{ kinematics = "plane-stress", thickness = {thickness} }}
 bodies.left = {{ {left} }}
 bodies.right = {{ young = {young}, poisson = 0.0 }}
-supports = [{{ on = "wall", {wall} }}]
-tractions = [{{ on = "pressed", pressure = 1.0 }}]
+supports = [{{ on = "wall", {wall} }}{held}]
+tractions = [{loads}]
 {joint}
 
 [[geometry.polygons]]
 body = "left"
 points = [[0, 0], [1, 0], [1, 1], [0, 1]]
-edges = ["", "face", "", "pressed"]
+edges = ["{below}", "face", "{above}", "pressed"]
 
 [[geometry.polygons]]
 body = "right"
 points = [[1, 0], [2, 0], [2, 1], [1, 1]]
-edges = ["", "wall", "", "seat"]
+edges = ["{below}", "wall", "{above}", "seat"]
 """
 
 
 ISOTROPIC = "young = 1.0, poisson = 0.0"
 
 
-def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, left=ISOTROPIC, wall=None, elastic=None, layer=None, grown=0.0):
+def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, left=ISOTROPIC, wall=None, elastic=None, layer=None, grown=0.0, bound=None, shear=0.0, moved=None):
     """Two unit blocks, pressed against each other by a unit pressure: stress xx = -1 everywhere. With E = 1 the energy is
     -(1 + gap) times the thickness: half of the work of the pressure on the shortening 2, less its work on the way to the seat.
 
     `left`: the material of the first, which without stress is longer by `grown` and has E = 1 along x. `wall`, `elastic`, `layer`: a spring
-    stiffness of the support, of the contact, or of a layer in its place; each is compressed by its inverse."""
-    joint = f'contacts = [{{ between = ["face", "seat"], gap = {gap}{f", stiffness = {elastic}" if elastic else ""} }}]'
+    stiffness of the support, of the contact, or of a layer in its place; each is compressed by its inverse. `bound`: of the friction of the contact, where there is a stress xy = `shear` everywhere, too.
+    Blocks shear by 2 `shear` then, and the left one slides along the other if its end is `moved` along y by more than that accounts for."""
+    law = f", stiffness = {elastic}" if elastic else f", friction = {{ bound = {bound} }}" if bound is not None else ""
+    joint = f'contacts = [{{ between = ["face", "seat"], gap = {gap}{law} }}]'
     joint = f'bonds = [{{ between = ["face", "seat"], stiffness = [{layer}, 3.0] }}]' if layer else joint
     support = f'type = "spring", stiffness = [{wall}, 2.0]' if wall else 'type = "clamped"'
-    text = BLOCKS.format(young=young, thickness=thickness, left=left, wall=support, joint=joint).encode()
+    held = f', {{ on = "pressed", type = "clamped", displacement = [{2 + gap}, {moved}] }}' if moved is not None else ""
+    sides = [f'{{ on = "{side}", value = [{s}, 0.0] }}' for side, s in (("above", shear), ("below", -shear)) if shear]
+    loads = ", ".join([*sides, *([] if held else [f'{{ on = "pressed", value = [1.0, {-shear}] }}'])])
+    around = dict(above="above", below="below") if shear else dict(above="", below="")
+    text = BLOCKS.format(young=young, thickness=thickness, left=left, wall=support, joint=joint, held=held, loads=loads, **around).encode()
     gap = 0.0 if layer else gap
     sunk, pressed = 1 / wall if wall else 0.0, sum(1 / k for k in (elastic, layer) if k)
     points, triangles, bodies = [], [], []
@@ -52,7 +58,7 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, left=ISOTROPIC, wa
                 triangles += [(a, a + 1, a + n + 2), (a, a + n + 2, a + n + 1)]
                 bodies += [body, body]
     points = np.array(points, float)
-    names = ["face", "pressed", "seat", "wall"]
+    names = ["face", "pressed", "seat", "wall", *(["below", "above"] if shear else [])]
     edges, owners = {}, {}
     for t, corners in enumerate(triangles):
         for i in range(3):
@@ -64,10 +70,11 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, left=ISOTROPIC, wa
                 owners[a, b] = [t]
     rows = []
     for (a, b), own in owners.items():
-        (x, _), (u, _) = points[[a, b]]
+        (x, y), (u, v) = points[[a, b]]
         left = bodies[own[0]] == 0
         at = {0: "pressed", 2: "wall", 1: "face" if left else "seat"}
-        rows.append((a, b, names.index(at[x]) if len(own) == 1 and x == u and x in at else -1))
+        name = at.get(x) if x == u else "below" if y == 0 else "above"
+        rows.append((a, b, names.index(name) if len(own) == 1 and name in names else -1))
     face = sorted((e for e, r in enumerate(rows) if r[2] == 0), key=lambda e: points[rows[e][0], 1])
     seat = sorted((e for e, r in enumerate(rows) if r[2] == 2), key=lambda e: points[rows[e][1], 1])
     pairs, data = [], []
@@ -76,8 +83,10 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, left=ISOTROPIC, wa
         data.append([1, 0, 1, 0, 1 / n, points[rows[e][0], 1], points[rows[e][1], 1], gap, gap] + [0] * 11)
     lengths = [np.hypot(*(points[b] - points[a])) for a, b, _ in rows]
     normals = [(points[b] - points[a])[::-1] * [1, -1] / l for (a, b, _), l in zip(rows, lengths)]
-    stress = np.array([[-1.0, 0], [0, 0]])
-    v = lambda x, body: np.array([sunk + ((2 - x[0]) / young if body else 1 / young + gap + pressed + (1 - x[0]) * (1 - grown)), 0.0])
+    stress = np.array([[-1.0, shear], [shear, 0]])
+    slid = 0.0 if moved is None else moved + 4 * shear
+    up = lambda x, body: 2 * shear * (x[0] - 2) + (0.0 if body else slid)
+    v = lambda x, body: np.array([sunk + ((2 - x[0]) / young if body else 1 / young + gap + pressed + (1 - x[0]) * (1 - grown)), up(x, body)])
     whose = np.zeros(len(points), int)
     for t, corners in enumerate(triangles):
         whose[list(corners)] = bodies[t]
@@ -96,7 +105,9 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, left=ISOTROPIC, wa
         "pairs": np.array(pairs, np.int32).reshape(-1, 7),
         "pair_data": np.array(data, float).reshape(-1, 20),
     }
-    energy = -thickness * (0.5 + 0.5 / young + gap - grown + (sunk + pressed) / 2)
+    energy = -thickness * (0.5 + 0.5 / young + gap - grown + (sunk + pressed) / 2 + 2 * shear**2)
+    if moved is not None:  # no load works, and friction does where it slides
+        energy = thickness * (1 + 2 * shear**2 + abs(shear * slid))
     manifest = {
         "format": 1,
         "program": "by hand",
@@ -117,6 +128,9 @@ def blocks(n=2, gap=0.25, young=1.0, thickness=1.0, degree=1, left=ISOTROPIC, wa
     arrays["tractions"] = np.repeat([stress @ n for n in normals], count, 0)
     arrays["pressure_counts"] = np.full(len(pairs), count, np.uint8)
     arrays["pressures"] = np.full(len(pairs) * count, -1.0)
+    if bound is not None:
+        arrays["friction_counts"] = np.full(len(pairs), count, np.uint8)
+        arrays["frictions"] = np.full(len(pairs) * count, shear)
     arrays |= {f"displacement_{k}": x.copy() for k, x in mesh.items()}
     arrays["displacement_degrees"] = np.full(len(triangles), 2, np.uint8)
     arrays["u_vertices"] = u

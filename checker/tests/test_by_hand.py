@@ -104,7 +104,7 @@ def material(a):
 
 
 def load(a):
-    with_scene(a, lambda text: text.replace("pressure = 1.0", "pressure = 1.01"))
+    with_scene(a, lambda text: text.replace("value = [1.0", "value = [1.01"))
 
 
 def name(a):

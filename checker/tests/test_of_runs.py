@@ -33,6 +33,17 @@ RUNS = [
     ("cases/rotor", []),
     ("checker/tests/every_law", []),
     ("checker/tests/every_law", ["--tolerance", "0.01"]),
+    ("cases/pushed_partly", []),
+    ("cases/pushed_partly", ["--degree", "2", "--tolerance", "0.02"]),
+    ("cases/pushed_slides", ["--degree", "3"]),
+    ("cases/pushed_sticks", ["--degree", "2"]),
+    ("cases/pulled_strip", []),
+    ("cases/sheared_contact", ["--degree", "3"]),
+    ("tests/scenes/held_by_friction", ["--tolerance", "0.05", "--adapt", "hp"]),
+    ("tests/scenes/dragged_off_by_friction", []),
+    ("checker/tests/rubbing_arc", []),
+    ("checker/tests/rubbing_arc", ["--degree", "2"]),
+    ("checker/tests/rubbing_arc", ["--degree", "3", "--adapt", "hp", "--tolerance", "0.05"]),
     ("tests/scenes/standing_turned", []),
     ("tests/scenes/moved_rigidly", []),
     ("tests/scenes/soft_between_stiff", []),
@@ -169,6 +180,29 @@ def test_gaps_of_another_scene(tmp_path, gap, other):
     write(arrays, tmp_path / "proof.npz")
     with pytest.raises(Refused, match="is not that of the scene"):
         check(tmp_path)
+
+
+@pytest.mark.parametrize("degree", ["1", "3"])
+def test_friction_along_a_curve(tmp_path, degree):
+    scene = ROOT / "checker/tests/rubbing_arc.toml"
+    line = [PROGRAM, "solve", scene, "--proof", "--quiet", "--degree", degree, "--out", tmp_path]
+    subprocess.run(line, check=True, timeout=300)
+    proof = check(tmp_path, scene)
+    assert any("the bound of friction is linear between vertices" in premise for premise in proof.premises)
+    work = json.loads((tmp_path / "report.json").read_text())["energy"]["friction_work"]
+    assert work > 10 * (proof.claim[1] - proof.claim[0]) / 1000
+    changes = [
+        (lambda a: a.update(frictions=a["frictions"] * 1.01), "friction of pair .* is above its bound"),
+        (lambda a: a.update(frictions=-a["frictions"]), "not in equilibrium"),
+        (lambda a: with_scene(a, lambda text: text.replace("[0.3, 0.2]", "[0.3, 0.199]")), "friction of pair .* is above its bound"),
+        (lambda a: a["manifest"]["claim"].update(upper=proof.claim[1] - work), "upper bound .* is claimed, and only"),
+    ]
+    for change, why in changes:
+        arrays = again(tmp_path)
+        change(arrays)
+        write(arrays, tmp_path / "changed.npz")
+        with pytest.raises(Refused, match=why):
+            check(tmp_path / "changed.npz")
 
 
 def test_bodies_that_the_scene_does_not_bond(tmp_path):

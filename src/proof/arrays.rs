@@ -3,6 +3,7 @@
 use super::npz::Archive;
 use crate::bounds::side_coefficients;
 use crate::dual::DualSolution;
+use crate::dual::equilibrium::contact_tractions;
 use crate::element::Displacement;
 use crate::problem::{Bow, ContactPair, Problem};
 
@@ -65,6 +66,12 @@ pub(super) fn stress(archive: &mut Archive, of: &str, problem: &Problem, dual: &
     let pairs = || dual.contact_traction.iter().flat_map(|interface| interface.iter());
     archive.array(&named("pressure_counts"), &pairs().map(|t| t.len() as u8).collect::<Vec<_>>(), 0);
     archive.array(&named("pressures"), &pairs().flatten().copied().collect::<Vec<f64>>(), 0);
+    if problem.has_friction() {
+        let along: Vec<Vec<f64>> =
+            problem.pairs().map(|pair| contact_tractions(problem, stress, pair)[1].clone()).collect();
+        archive.array(&named("friction_counts"), &along.iter().map(|t| t.len() as u8).collect::<Vec<_>>(), 0);
+        archive.array(&named("frictions"), &along.concat(), 0);
+    }
 }
 
 /// The coefficients of v; `of` stands before their names.

@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 /// A table of the scene by its place, and the keys that the checker knows in it.
-const KNOWN: [(&str, &str); 12] = [
+const KNOWN: [(&str, &str); 13] = [
     ("", "title model mesh geometry bodies boundaries supports tractions contacts bonds quantities"),
     ("model", "kinematics thickness"),
     (
@@ -16,7 +16,8 @@ const KNOWN: [(&str, &str); 12] = [
     ("bodies.rotation", "density omega about"),
     ("supports", "on type displacement direction stiffness"),
     ("tractions", "on value gradient pressure"),
-    ("contacts", "between on gap normals direction obstacle move stiffness"),
+    ("contacts", "between on gap normals direction obstacle move stiffness friction"),
+    ("contacts.friction", "bound"),
     ("bonds", "between direction stiffness"),
     ("geometry.polygons", "body points edges arcs"),
 ];
@@ -36,7 +37,9 @@ pub fn unknown(text: &str) -> Option<String> {
                 let of = if place.is_empty() { String::new() } else { format!(" in `{place}`") };
                 return Some(format!("`{key}`{of}"));
             }
-            if let Some(key) = ["young", "gap", "stiffness"].into_iter().find(|key| is_range(place, table, key)) {
+            if let Some(key) =
+                ["young", "gap", "stiffness", "bound"].into_iter().find(|key| is_range(place, table, key))
+            {
                 return Some(format!("a range of `{key}` in `{place}`"));
             }
             for (_, key, kinds) in KINDS.iter().filter(|(of, ..)| *of == place) {
@@ -55,7 +58,7 @@ fn is_range(place: &str, table: &Table, key: &str) -> bool {
     let nested = parts.iter().any(Value::is_array);
     match (place, key) {
         ("bodies", "young") | ("contacts", "stiffness") => true,
-        ("contacts", "gap") => !nested,
+        ("contacts", "gap") | ("contacts.friction", "bound") => !nested,
         ("supports" | "bonds", "stiffness") => nested,
         _ => false,
     }
@@ -93,5 +96,15 @@ mod tests {
         assert_eq!(with("poisson = 0.3", turning), "`axis` in `bodies.rotation`");
         assert_eq!(with("young = ", "young = [1.0, 2.0] # "), "a range of `young` in `bodies`");
         assert_eq!(unknown(&format!("{text}\n[[cracks]]\n")), Some("`cracks`".to_string()));
+    }
+
+    #[test]
+    fn friction_has_a_proof_where_its_bound_is_given() {
+        let text = std::fs::read_to_string(crate::in_repository("cases/pushed_partly.toml")).unwrap();
+        let with = |friction: &str| unknown(&text.replace("bound = 0.15", friction));
+        assert_eq!(with("bound = 0.15"), None);
+        assert_eq!(with("bound = [[0.0, 0.1], [1.0, 0.3]]"), None);
+        assert_eq!(with("bound = [0.1, 0.3]").as_deref(), Some("a range of `bound` in `contacts.friction`"));
+        assert_eq!(with("coefficient = 0.15").as_deref(), Some("`coefficient` in `contacts.friction`"));
     }
 }

@@ -38,6 +38,11 @@ fn scenes_beyond_the_checker_are_refused_before_they_are_solved() {
     );
     let turned = fs::read_to_string(case("tube")).expect("a scene");
     refused(&turned, "a scene with `kinematics = \"axisymmetric\"` in `model` has no proof");
+    let wedged = fs::read_to_string(case("wedge")).expect("a scene");
+    refused(&wedged, "a scene with `coefficient` in `contacts.friction` has no proof");
+    let pushed = fs::read_to_string(case("pushed_partly")).expect("a scene");
+    let pushed = pushed.replace("bound = 0.15", "bound = [0.1, 0.15]");
+    refused(&pushed, "a scene with a range of `bound` in `contacts.friction` has no proof");
     assert!(!folder.path().join("out").exists());
 }
 

@@ -68,6 +68,11 @@ fn claim(report: &Report, energy: &Energy) -> Markup {
     }
 }
 
+/// True if friction takes part in the energy.
+fn rubs(energy: &Energy) -> bool {
+    energy.friction_work.is_some()
+}
+
 fn from_below(energy: &Energy, dual: &DualSummary) -> Markup {
     let degrees = match (dual.degree_min, dual.degree_max) {
         (least, most) if least == most => format!("degree {most}"),
@@ -80,6 +85,7 @@ fn from_below(energy: &Energy, dual: &DualSummary) -> Markup {
                 "Take any stress λ that balances the loads in every body, meets the tractions and pulls nowhere on a contact. Write Π(λ) = ½∫ aλ : λ − ∫ T(λ)·u" sub { "0" } " − ∫ T" sub { "n" } "(λ) g "
                 "for the energy that it stores, less its work on prescribed displacements and gaps. The exact stress has the least Π of all of them, and there Π(σ) = −𝓛(u). So −Π(λ) ≤ 𝓛(u), "
                 "whoever computed λ and however badly."
+                @if rubs(energy) { " Friction asks of λ that its traction along a contact is nowhere above the given bound τ̄, and adds nothing to Π." }
             }
             p {
                 "This run has such a stress on " b { (grouped(dual.triangles)) } " triangles, with polynomials of " (degrees) ", found by the method " code { (clean(&dual.method)) } ". Its equilibrium is measured afterwards on "
@@ -98,6 +104,7 @@ fn from_above(report: &Report, energy: &Energy) -> Markup {
             p {
                 "The exact displacement has the least energy 𝓛(v) = ½∫ c e(v) : e(v) − ∫ F·v − ∫ P·v of all that keep the supports and do not penetrate. So 𝓛(u) ≤ 𝓛(v) for any of them, whoever made it. "
                 "That v respects supports and contact holds along whole edges, and not at nodes alone."
+                @if rubs(energy) { " Where v slides by v" sub { "t" } ", friction adds ∫ τ̄ |v" sub { "t" } "| to 𝓛(v)." }
             }
             p {
                 "The best one here, " b { (upper_from(&energy.upper_from)) } ", gives 𝓛(v) = " b { (ends(energy)[1]) } "."
@@ -128,7 +135,9 @@ fn between(energy: &Energy) -> Markup {
             @if let Some((gap, local, apart)) = local {
                 p {
                     "The gap is computed twice. As the difference of two energies of the whole scene, of the free displacement that the stress gives, it is " (significant(gap, 6)) "; as a sum over triangles and contacts of terms none of which is "
-                    "negative, ½∫ a(λ − c e(v)) : (λ − c e(v)) and ∫ (−T" sub { "n" } ")(g − [v" sub { "n" } "]), it is " (significant(local, 6)) ". They are computed by code of their own and differ by "
+                    "negative, ½∫ a(λ − c e(v)) : (λ − c e(v)) and ∫ (−T" sub { "n" } ")(g − [v" sub { "n" } "])"
+                    @if rubs(energy) { ", with friction also ∫ (τ̄ |v" sub { "t" } "| + T" sub { "t" } " v" sub { "t" } ")" }
+                    ", it is " (significant(local, 6)) ". They are computed by code of their own and differ by "
                     b { (significant(apart, 2)) } " of 𝒮. A load that one of them forgets, a sign, or a missing row shows here."
                 }
             }
@@ -236,6 +245,17 @@ mod tests {
         }
         dossier.report.energy = None;
         assert!(why(&dossier.report).is_none());
+    }
+
+    #[test]
+    fn friction_is_told_where_it_takes_part() {
+        let sample = Sample::new(3, Verdict::Agree);
+        let mut dossier = sample.dossier();
+        let mut told = |work: Option<f64>| {
+            dossier.report.energy.as_mut().expect("a bracket").friction_work = work;
+            why(&dossier.report).expect("a bracket").matches("τ̄").count()
+        };
+        assert_eq!((told(None), told(Some(0.25))), (0, 3));
     }
 
     #[test]
