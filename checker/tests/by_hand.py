@@ -6,6 +6,9 @@ import json
 import zipfile
 
 import numpy as np
+import pytest
+from hypercircle_check import Refused
+from hypercircle_check.main import check
 
 BLOCKS = """
 model = {{ kinematics = "plane-stress", thickness = {thickness} }}
@@ -162,3 +165,23 @@ def with_scene(arrays, change):
     text = change(bytes(arrays["scene"]).decode())
     arrays["scene"] = np.frombuffer(text.encode(), np.uint8)
     arrays["manifest"]["scene_sha256"] = hashlib.sha256(text.encode()).hexdigest()
+
+
+def in_scene(old, new):
+    """The change of a proof into one for the scene with `new` in the place of `old`."""
+    return lambda a: with_scene(a, lambda text: text.replace(old, new))
+
+
+def refused(path, arrays, change, why):
+    """The proof is not accepted once `change` was made to it, for the reason `why`; the file is at `path` then."""
+    change(arrays)
+    write(arrays, path)
+    with pytest.raises(Refused, match=why):
+        check(path)
+
+
+def refused_once_changed(path, arrays, change, why):
+    """As `refused`, of a proof that is accepted as it is."""
+    write(arrays, path)
+    check(path)
+    refused(path, arrays, change, why)

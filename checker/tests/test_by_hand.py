@@ -5,7 +5,7 @@ import zipfile
 
 import numpy as np
 import pytest
-from by_hand import blocks, with_scene, write
+from by_hand import blocks, refused, refused_once_changed, with_scene, write
 from hypercircle_check import Refused
 from hypercircle_check.main import check, main
 
@@ -200,13 +200,7 @@ LAW_CHANGES = [
 
 @pytest.mark.parametrize("change, why", LAW_CHANGES, ids=[change.__name__ for change, _ in LAW_CHANGES])
 def test_changes_of_laws_are_refused(tmp_path, change, why):
-    arrays = blocks(**ALL)
-    write(arrays, tmp_path / "proof.npz")
-    check(tmp_path)
-    change(arrays)
-    write(arrays, tmp_path / "proof.npz")
-    with pytest.raises(Refused, match=why):
-        check(tmp_path)
+    refused_once_changed(tmp_path / "proof.npz", blocks(**ALL), change, why)
 
 
 def turned(a):
@@ -262,11 +256,7 @@ CHANGES = [
 
 @pytest.mark.parametrize("change, why", CHANGES, ids=[change.__name__ for change, _ in CHANGES])
 def test_changes_are_refused_for_what_they_are(tmp_path, capsys, change, why):
-    arrays = blocks()
-    change(arrays)
-    write(arrays, tmp_path / "proof.npz")
-    with pytest.raises(Refused, match=why):
-        check(tmp_path)
+    refused(tmp_path / "proof.npz", blocks(), change, why)
     assert main([str(tmp_path)]) == 1
     assert capsys.readouterr().out.startswith("not proved: ")
 

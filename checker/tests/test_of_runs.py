@@ -7,8 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from by_hand import with_scene, write
-from hypercircle_check import Refused
+from by_hand import in_scene, refused, with_scene
 from hypercircle_check.main import check, main, read
 
 ROOT = Path(__file__).parents[2]
@@ -128,11 +127,7 @@ def test_quantities(tmp_path):
         (back, "'tip' of the proof is no mean displacement"),
     ]
     for change, why in changes:
-        arrays = again(tmp_path)
-        change(arrays)
-        write(arrays, tmp_path / "changed.npz")
-        with pytest.raises(Refused, match=why):
-            check(tmp_path / "changed.npz")
+        refused(tmp_path / "changed.npz", again(tmp_path), change, why)
 
 
 def again(folder):
@@ -175,11 +170,7 @@ def test_gaps_of_another_scene(tmp_path, gap, other):
     (tmp_path / "gap.toml").write_text(scene.replace("GAP", gap))
     subprocess.run([PROGRAM, "solve", tmp_path / "gap.toml", "--proof", "--quiet", "--out", tmp_path], check=True, timeout=300)
     check(tmp_path)
-    arrays = again(tmp_path)
-    with_scene(arrays, lambda text: text.replace(gap, other))
-    write(arrays, tmp_path / "proof.npz")
-    with pytest.raises(Refused, match="is not that of the scene"):
-        check(tmp_path)
+    refused(tmp_path / "changed.npz", again(tmp_path), in_scene(gap, other), "is not that of the scene")
 
 
 @pytest.mark.parametrize("degree", ["1", "3"])
@@ -194,26 +185,19 @@ def test_friction_along_a_curve(tmp_path, degree):
     changes = [
         (lambda a: a.update(frictions=a["frictions"] * 1.01), "friction of pair .* is above its bound"),
         (lambda a: a.update(frictions=-a["frictions"]), "not in equilibrium"),
-        (lambda a: with_scene(a, lambda text: text.replace("[0.3, 0.2]", "[0.3, 0.199]")), "friction of pair .* is above its bound"),
+        (in_scene("[0.3, 0.2]", "[0.3, 0.199]"), "friction of pair .* is above its bound"),
         (lambda a: a["manifest"]["claim"].update(upper=proof.claim[1] - work), "upper bound .* is claimed, and only"),
     ]
     for change, why in changes:
-        arrays = again(tmp_path)
-        change(arrays)
-        write(arrays, tmp_path / "changed.npz")
-        with pytest.raises(Refused, match=why):
-            check(tmp_path / "changed.npz")
+        refused(tmp_path / "changed.npz", again(tmp_path), change, why)
 
 
 def test_bodies_that_the_scene_does_not_bond(tmp_path):
     """One mesh of two bodies is no proof of a scene in which they are apart."""
     line = [PROGRAM, "solve", ROOT / "cases/bonded.toml", "--proof", "--quiet", "--out", tmp_path]
     subprocess.run(line, check=True, timeout=300)
-    arrays = again(tmp_path)
-    with_scene(arrays, lambda text: text.replace('[[bonds]]\nbetween = ["left_face", "right_face"]', ""))
-    write(arrays, tmp_path / "proof.npz")
-    with pytest.raises(Refused, match="joins what the scene does not bond"):
-        check(tmp_path)
+    unbonded = in_scene('[[bonds]]\nbetween = ["left_face", "right_face"]', "")
+    refused(tmp_path / "changed.npz", again(tmp_path), unbonded, "joins what the scene does not bond")
 
 
 def test_page(tmp_path, capsys):

@@ -136,12 +136,11 @@ class CoupledDescent:
                 return self._found(found, forces, steps), forces / rows.length
             # What has all its unknowns held slides by what they say: its force is the whole bound, to which rounds would climb slowly.
             stays = (np.abs(stretched - before) <= SAME * np.abs(stretched)) & (np.abs(stretched) > STRETCHED * size)
-            slides = stays & ~hurried & (np.abs(forces) < rows.weight)
+            slides, before = stays & ~hurried & (np.abs(forces) < rows.weight), stretched
             if slides.any():
                 forces = np.where(slides, np.copysign(rows.weight, stretched), forces)
-                before, hurried, best = stretched, hurried | slides, np.inf
+                hurried, best = hurried | slides, np.inf
                 continue
-            before = stretched
             if worst > SLOW * best and self.stiff < STIFFEST:
                 return CoupledDescent(it, rows, STIFFER * self.stiff).minimise(near, forces)
             best = min(best, worst)

@@ -11,6 +11,7 @@ use super::Dossier;
 use super::data::Given;
 use super::lattice::Lattice;
 use crate::compare::von_mises_of;
+use crate::element::displacement::on_quadrilaterals;
 use crate::element::geometry::sub_corners;
 use crate::mesh::Quadrilateral;
 use crate::problem::Problem;
@@ -94,10 +95,11 @@ fn given(out: &mut Sheet, dossier: &Dossier) -> std::io::Result<()> {
     let indices: Vec<u8> = nodes_of.flat_map(|n| (n as i32).to_le_bytes()).collect();
     out.table("nodes_of_triangles", "Int32", 6, mesh.triangles.len(), &indices)?;
     if !mesh.cells.is_empty() {
-        let middle = |e: usize| mesh.points.len() + e;
+        // Corners, sides and centre, of the nodes row by row.
+        const AROUND: [usize; 9] = [0, 2, 8, 6, 1, 5, 7, 3, 4];
         let nodes_of = |cell: Quadrilateral| {
-            let ([a, b, c, d], sides) = (cell.corners, cell.sides.map(middle));
-            [a, b, c, d, sides[0], sides[1], sides[2], sides[3], middle(cell.diagonal)]
+            let rows = on_quadrilaterals::nodes(mesh, 2, &cell);
+            AROUND.map(|i| rows[i])
         };
         let nodes: Vec<[usize; 9]> = mesh.quadrilaterals().map(nodes_of).collect();
         let indices: Vec<u8> = nodes.as_flattened().iter().flat_map(|n| (*n as i32).to_le_bytes()).collect();

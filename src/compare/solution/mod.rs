@@ -10,11 +10,13 @@ mod apart;
 mod checks;
 mod digits;
 mod nonmatching;
+mod places;
 mod rubbing;
 mod sites;
 mod weak;
 
 pub use nonmatching::Nonmatching;
+pub use places::{place, written_place};
 pub use rubbing::{Ask, Rubbed};
 pub use sites::{Site, Sites, Span};
 pub use weak::{Law, Shape, Station, Weak};
@@ -27,7 +29,7 @@ use super::forces::turned;
 use super::forces::turned::{Kind, Rule};
 use crate::bounds::{Hold, Holds, NoUpperBound, Nodes, holds};
 use crate::element::Material;
-use crate::problem::{Problem, ROUND_OFF};
+use crate::problem::Problem;
 
 /// Residual that a solver may leave in its equations, relative to the forces they balance.
 pub const SOLVER: f64 = 1e-6;
@@ -358,45 +360,4 @@ impl<'a> Solution<'a> {
         let loads: f64 = self.forces.load.iter().map(|f| size(*f)).sum();
         loads.max(self.larger * (0..self.rest.len()).map(|n| size(self.supported(n))).sum::<f64>())
     }
-}
-
-impl Candidate {
-    /// A node as a message names it: its number in the file it comes from, from one, and its coordinates.
-    pub fn named(&self, problem: &Problem, node: usize) -> String {
-        let [x, y] = written_place(problem, node).map(|x| round(x, extent(problem)));
-        match self.numbering.as_ref().and_then(|n| n.point(node)) {
-            Some(point) => format!("{point}, at ({x}, {y})"),
-            None => format!("({x}, {y})"),
-        }
-    }
-}
-
-/// Coordinates of a node: a vertex, or the midpoint of an edge.
-pub fn place(problem: &Problem, node: usize) -> [f64; 2] {
-    let mesh = &problem.mesh;
-    match node.checked_sub(mesh.points.len()) {
-        None => mesh.points[node],
-        Some(e) => {
-            let [a, b] = mesh.edges[e].vertices.map(|v| mesh.points[v]);
-            [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
-        }
-    }
-}
-
-/// The same as the files of the scene have them; what is zero but for rounding is zero.
-pub fn written_place(problem: &Problem, node: usize) -> [f64; 2] {
-    let none = ROUND_OFF * extent(problem);
-    problem.scene.as_written(place(problem, node)).map(|x| if x.abs() < none { 0.0 } else { x })
-}
-
-/// The largest coordinate of the mesh.
-fn extent(problem: &Problem) -> f64 {
-    problem.mesh.points.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()))
-}
-
-/// `x` to six digits of `extent`, for a message; no negative zero.
-fn round(x: f64, extent: f64) -> f64 {
-    let step = 10f64.powi(extent.max(f64::MIN_POSITIVE).log10().ceil() as i32 - 6);
-    let rounded = (x / step).round() / (1.0 / step).round().max(1.0 / step);
-    if rounded == 0.0 { 0.0 } else { rounded }
 }

@@ -23,7 +23,7 @@ def missing(error):
 
 
 def given(mesh):
-    """The mesh and the displacements that fields.vtu keeps beside what it shows, and what has those on quadrilaterals; nothing in other files."""
+    """The mesh and the displacements that fields.vtu keeps beside what it shows; nothing in other files."""
     arrays = dict(mesh.field_data)
     nodes, triangles = arrays.pop("nodes", None), arrays.pop("nodes_of_triangles", None)
     if "scene_sha256" not in arrays:

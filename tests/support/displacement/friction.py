@@ -38,10 +38,10 @@ class Rubbing(Model):
         (a, b), (s, t) = pair["first"], friction["bound"]
         c, d = pair["second"] or (None, None)
         whole = np.linalg.norm(self.points[b] - self.points[a]) * self.problem["thickness"]
-        keys, parts, bounds = [(a, c), (b, d)], [1 / 2, 1 / 2], [(2 * s + t) / 6, (s + 2 * t) / 6]
+        keys, parts, bounds = [(a, c), (b, d)], [1 / 2, 1 / 2], self.shares(s, t)
         if self.degree == 2:
             keys.append(tuple(None if e is None else self.vertices + e for e in pair["edges"]))
-            parts, bounds = [1 / 6, 1 / 6, 4 / 6], [s / 6, t / 6, (s + t) / 3]
+            parts = [1 / 6, 1 / 6, 4 / 6]
         self.sides.append((keys, whole, (s, t)))
         # Where contact turns, its direction is linear between vertices, and has its mean at midpoints.
         normals, tangents = ([*ends, np.mean(ends, axis=0)] for ends in np.array([pair["direction"], friction["tangent"]]))
@@ -49,6 +49,18 @@ class Rubbing(Model):
             place = self.places.setdefault(key, [normal, tangent, 0.0, 0.0])
             place[2] += whole * bound
             place[3] += whole * part
+
+    def shares(self, s, t):
+        """What the nodes of a side of length one resist, with a bound that is s and t at its ends."""
+        return [(2 * s + t) / 6, (s + 2 * t) / 6] if self.degree == 1 else [s / 6, t / 6, (s + t) / 3]
+
+    def with_limits(self, bounds, shares):
+        """Values where the sides have these bounds at their ends, shared by their nodes as ``shares`` says."""
+        limit, places = np.zeros(len(self.places)), {key: i for i, key in enumerate(self.places)}
+        for (keys, whole, _), ends in zip(self.sides, bounds):
+            for key, share in zip(keys, shares(*ends)):
+                limit[places[key]] += whole * share
+        return self.rubbed(limit=limit)
 
     def _row(self, key, which):
         row = {}
@@ -146,22 +158,12 @@ def root(j, limit, _):
 
 def turned(model):
     """The bound as if it were counted from the other end."""
-    other = [bound for _, _, bound in model.sides][::-1]
-    limit, keys = np.zeros(len(model.places)), {key: i for i, key in enumerate(model.places)}
-    for (own, whole, _), (t, s) in zip(model.sides, other):
-        parts = [(2 * s + t) / 6, (s + 2 * t) / 6] if model.degree == 1 else [s / 6, t / 6, (s + t) / 3]
-        for key, part in zip(own, parts):
-            limit[keys[key]] += whole * part
-    return model.rubbed(limit=limit)
+    return model.with_limits([(t, s) for _, _, (s, t) in model.sides[::-1]], model.shares)
 
 
 def thirds(model):
-    """What a side may resist in three equal shares, in place of 1/6, 1/6 and 4/6: a sum that is right of parts that are not."""
-    limit, keys = np.zeros(len(model.places)), {key: i for i, key in enumerate(model.places)}
-    for own, whole, (s, t) in model.sides:
-        for key in own:
-            limit[keys[key]] += whole * (s + t) / 6
-    return model.rubbed(limit=limit)
+    """What a side of degree 2 may resist in three equal shares, in place of 1/6, 1/6 and 4/6: a sum that is right of parts that are not."""
+    return model.with_limits([ends for _, _, ends in model.sides], lambda s, t: 3 * [(s + t) / 6])
 
 
 def coulomb(model, mu, law="exact", times=1.0, solutions=200):

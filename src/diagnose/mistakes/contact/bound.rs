@@ -38,10 +38,11 @@ impl Along<'_> {
         let miss: f64 = sliding.iter().map(|r| (r.force + times * against(r)).powi(2)).sum();
         let size: f64 = sliding.iter().map(|r| r.force * r.force).sum();
         let within = |r: &Rubbed| r.slip.abs() > sticks || r.force.abs() <= (times.abs() + ABOVE) * r.limit;
-        let follows = (miss / size).sqrt() <= ABOVE && rubbed.iter().all(within);
+        let missed = (miss / size).sqrt();
+        let follows = missed <= ABOVE && rubbed.iter().all(within);
         // A small mistake is one where nothing else is wrong, and it has to explain what is missed.
         let alone = self.solution.residual() <= self.solution.allowed();
-        let least = if alone { (SURE * (miss / size).sqrt()).max(SURE * SOLVER) } else { ABOVE };
+        let least = if alone { SURE * missed.max(SOLVER) } else { ABOVE };
         if !follows || (times - 1.0).abs() <= least {
             return None;
         }
