@@ -76,7 +76,7 @@ struct Job {
 }
 
 /// Of the budget of a run, the part that Uzawa's method has in a reduced matrix.
-const UZAWA_REDUCED: f64 = 0.25;
+const UZAWA_REDUCED: f64 = 0.06;
 
 /// Makes the matrix.
 ///

@@ -4,7 +4,7 @@
 
 use crate::support::Blocks;
 use crate::support::asked::{ask, everything, of_degree, quantity};
-use crate::support::random::Random;
+use crate::support::random::{Random, scenes_or};
 use crate::support::scenes::sample;
 use hypercircle::dual::{ActiveSet, Clarabel, Condensed, DualMethod, Options};
 use hypercircle::element::Elements;
@@ -171,7 +171,7 @@ fn exact_fields_give_intervals_of_rounding() {
 
 #[test]
 fn intervals_of_coarse_and_fine_meshes_never_contradict_each_other() {
-    let wanted: usize = std::env::var("HYPERCIRCLE_SCENES").ok().map_or(3, |n| n.parse().expect("a number of scenes"));
+    let wanted = scenes_or(3);
     let (mut met, mut infinite, mut seed) = (0, 0, 7000);
     let mut narrowed = Vec::new();
     while met < wanted {

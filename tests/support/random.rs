@@ -2,6 +2,11 @@
 
 pub struct Random(u64);
 
+/// How many random scenes a test takes: `HYPERCIRCLE_SCENES`, or `few` where it is not set.
+pub fn scenes_or(few: usize) -> usize {
+    std::env::var("HYPERCIRCLE_SCENES").ok().map_or(few, |n| n.parse().expect("a number of scenes"))
+}
+
 impl Random {
     pub fn new(seed: u64) -> Self {
         Random(seed)

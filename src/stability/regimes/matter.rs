@@ -145,7 +145,7 @@ pub(super) const REGIMES: &[Regime] = &[
         title: "Faces of a crack that close at one point",
         parameter: "slope of the gap on both sides of the point",
         values: SLOPES,
-        reduced: &[0, 3, 5],
+        reduced: &[0, 5],
         build: crack,
         known: |_| Known::forces(vec![[0.0, f64::NAN]], 2.0),
         degrees: true,

@@ -139,7 +139,7 @@ pub(super) const REGIMES: &[Regime] = &[
         title: "A fan of flat triangles around one vertex near the contact",
         parameter: "height of the flattest triangle over its base",
         values: &[0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6],
-        reduced: &[0, 5],
+        reduced: &[0, 3],
         promised: 6,
         build: fan,
         known: |_| lift_known(),

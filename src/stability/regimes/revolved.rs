@@ -145,7 +145,7 @@ pub(super) const REGIMES: &[Regime] = &[
         title: "A contact that ends on the axis, or begins there",
         parameter: "slope of a cone, or below zero of a dish",
         values: &[0.0, 0.1, 1.0, 10.0, 100.0, -0.1, -1.0, -10.0],
-        reduced: &[0, 3, 6],
+        reduced: &[0, 6],
         build: cone,
         known: cone_known,
         degrees: true,

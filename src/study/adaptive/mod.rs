@@ -36,7 +36,7 @@ use admission::Admission;
 use answering::Answering;
 use forecast::Forecast;
 use indicators::Indicators;
-use outlook::outlook;
+use outlook::{outlook, rate, stalls};
 use rounds::{Next, Rounds, across};
 use stage::{Solved, Stage};
 use stop::Stop;
@@ -325,12 +325,6 @@ fn rounding(certified: &Certified, row: &HistoryRow, goal: &Goal, terms: &Indica
     is_rounding.then_some(Stop::Rounding { gap, round_off })
 }
 
-/// True if the last two meshes were hardly worth their triangles.
-fn stalls(history: &[HistoryRow], goal: &Goal) -> bool {
-    let slow = |row: &HistoryRow| row.rate.zip(goal.least_rate).is_some_and(|(rate, least)| rate < least);
-    history.len() > 2 && history[history.len() - 2..].iter().all(slow)
-}
-
 fn row(
     certified: &Certified,
     goal: &Goal,
@@ -341,9 +335,7 @@ fn row(
     let free = bracket.free.as_ref().map_or(f64::INFINITY, |free| free.upper());
     let upper = goal.known_upper.map_or(free, |known| free.min(known));
     let relative_error_bound = in_numbers(bracket.relative_error(upper));
-    let rate = before.map(|b| {
-        (b.relative_error_bound / relative_error_bound).ln() / (dual.unknowns as f64 / b.unknowns as f64).ln()
-    });
+    let rate = before.map(|before| rate(before, relative_error_bound, dual.unknowns));
     HistoryRow {
         triangles: problem.mesh.triangles.len(),
         unknowns: dual.unknowns,

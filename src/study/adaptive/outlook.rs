@@ -17,6 +17,10 @@ const EARLY: usize = 500;
 /// meet the strongest singularities with a fraction of it.
 const STALLED: f64 = 0.2;
 
+/// The error stands still if so many times as many unknowns make it fall like a lesser power of them than this.
+const GROWN: f64 = 10.0;
+const STANDS: f64 = 0.01;
+
 /// A sentence where the error has stalled, or where the tolerance asks at the present pace for a mesh beyond the limits
 /// of triangles and memory; `size` is that of the last mesh, and goes on growing as its triangles do.
 pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, size: Size) -> Option<String> {
@@ -26,8 +30,7 @@ pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, s
     if now.relative_error_bound <= goal.tolerance || now.triangles < EARLY {
         return None;
     }
-    let fall = (before.relative_error_bound / now.relative_error_bound).ln();
-    let pace = fall / (now.unknowns as f64 / before.unknowns as f64).ln();
+    let pace = rate(before, now.relative_error_bound, now.unknowns);
     if pace < STALLED {
         return Some(format!(
             "the error stalls: {} on {} triangles, {} on {}, where {tolerance} was asked for",
@@ -45,6 +48,26 @@ pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, s
         _ => return None,
     };
     Some(format!("at the present pace {tolerance} takes about {} triangles ({why})", rounded(wanted)))
+}
+
+/// True if the last two meshes were hardly worth their triangles, or if the last ten times as many unknowns changed next to nothing.
+pub fn stalls(history: &[HistoryRow], goal: &Goal) -> bool {
+    let slow = |row: &HistoryRow| row.rate.zip(goal.least_rate).is_some_and(|(rate, least)| rate < least);
+    history.len() > 2 && history[history.len() - 2..].iter().all(slow) || stands_still(history)
+}
+
+/// True if the error falls over the last ten times as many unknowns by less than a power of them that halves it within 10³⁰. A feature that
+/// is far smaller than its triangles may leave the error as it is for many meshes, but takes few triangles on each.
+fn stands_still(history: &[HistoryRow]) -> bool {
+    let Some(now) = history.last() else { return false };
+    let before =
+        history.iter().rfind(|row| row.triangles >= EARLY && row.unknowns as f64 * GROWN <= now.unknowns as f64);
+    before.is_some_and(|before| rate(before, now.relative_error_bound, now.unknowns) < STANDS)
+}
+
+/// The power of the unknowns by which the error has fallen since `before`.
+pub fn rate(before: &HistoryRow, relative_error_bound: f64, unknowns: usize) -> f64 {
+    (before.relative_error_bound / relative_error_bound).ln() / (unknowns as f64 / before.unknowns as f64).ln()
 }
 
 /// To two digits.
@@ -90,6 +113,20 @@ mod tests {
     fn an_error_that_hardly_falls_has_stalled() {
         let text = said(&falling(0.1, 5), &Goal::new(1e-3), Budget::UNLIMITED).expect("it has stalled");
         assert!(text.starts_with("the error stalls: 0.934 % on 2000 triangles, 0.758 % on 16000"), "{text}");
+    }
+
+    #[test]
+    fn an_error_that_ten_times_the_unknowns_leave_as_it_is_stands_still() {
+        let goal = Goal::new(1e-3);
+        assert!(stalls(&falling(0.005, 5), &goal));
+        assert!(!stalls(&falling(0.005, 4), &goal), "eight times the unknowns");
+        assert!(!stalls(&falling(0.05, 9), &goal), "slow, but it falls");
+        // Few triangles a mesh, towards a feature far below the size of any of them.
+        let mut local = falling(0.0, 40);
+        for (k, row) in local.iter_mut().enumerate() {
+            row.unknowns = 6000 + 100 * k;
+        }
+        assert!(!stalls(&local, &goal));
     }
 
     #[test]
