@@ -82,7 +82,7 @@ fn fault(problem: &Problem, judged: &Judged, findings: &[Finding], own: &[&Check
     };
     if let Some(first) = findings.first() {
         let kind = Kind::of_finding(&first.name);
-        let place = place::of_finding(problem, judged, &first.name).filter(|_| kind.has_place());
+        let place = place::of_finding(problem, judged, first).filter(|_| kind.has_place());
         let mut fault = made(kind, &first.name, first.sentence.clone(), place);
         fault.more = findings[1..].iter().map(|finding| finding.sentence.clone()).collect();
         return fault;

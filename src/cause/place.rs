@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::bounds::{bernstein, holds, of_pair};
 use crate::compare::solution::{Sites, written_place};
 use crate::compare::{Candidate, Judged};
+use crate::diagnose::Finding;
 use crate::problem::{ContactPair, Problem};
 
 /// A point of the scene and what it belongs to.
@@ -121,8 +122,12 @@ fn worst_node(judged: &Judged) -> Option<usize> {
 
 /// The place that a finding is about, if its name tells one; otherwise the place with the largest residual of
 /// equilibrium.
-pub(super) fn of_finding(problem: &Problem, judged: &Judged, name: &str) -> Option<Place> {
+pub(super) fn of_finding(problem: &Problem, judged: &Judged, finding: &Finding) -> Option<Place> {
+    let name = finding.name.as_str();
     let interface = problem.interfaces.iter().position(|i| name.starts_with(&format!("contact/{}/", i.name)));
+    if finding.node.is_some() {
+        return finding.node.map(|node| Place::of(problem, node, interface));
+    }
     if interface.is_some() {
         return deepest(problem, &judged.candidate, interface).map(|(place, ..)| place);
     }

@@ -53,11 +53,18 @@ pub struct Finding {
     pub expected: Option<f64>,
     /// In words.
     pub sentence: String,
+    /// The node where it is worst, counted as vertices, then midpoints of edges; `None` where that is not known.
+    #[serde(skip)]
+    pub node: Option<usize>,
 }
 
 impl Finding {
     fn new(name: impl Into<String>, value: Option<f64>, expected: Option<f64>, sentence: impl Into<String>) -> Self {
-        Finding { name: name.into(), value, expected, sentence: sentence.into() }
+        Finding { name: name.into(), value, expected, sentence: sentence.into(), node: None }
+    }
+
+    fn at(self, node: Option<usize>) -> Self {
+        Finding { node, ..self }
     }
 }
 

@@ -98,7 +98,7 @@ const WAVE: Regime = Regime {
 const BORE: Regime = Regime {
     parameter: "couple over weight and radius",
     values: &[0.0, 1e-6, 1e-3, 1.0],
-    reduced: &[2],
+    reduced: &[0, 2],
     reported: "MOOSE #33657, PR #33283",
     ..PLAIN
 };

@@ -166,6 +166,15 @@ def thirds(model):
     return model.with_limits([ends for _, _, ends in model.sides], lambda s, t: 3 * [(s + t) / 6])
 
 
+def at_one_place(model):
+    """Half as much again as the bound allows at the middle of the contact, and nowhere else."""
+    places = list(model.places)
+    heights = model.points[[key[0] for key in places], 1]
+    limit = model.limit.copy()
+    limit[np.argmin(abs(heights - heights.mean()))] *= 1.5
+    return model.rubbed(limit=limit)
+
+
 def coulomb(model, mu, law="exact", times=1.0, solutions=200):
     """Limits ``times`` ``mu`` as large as contact forces, from solution to solution; with few of them they lag behind."""
     model.limit = np.zeros(len(model.places))
@@ -200,6 +209,8 @@ WAYS = {
     "bound_unit": lambda model: model.rubbed(times=1e-3),
     "bound_half": lambda model: model.rubbed(times=0.5),
     "bound_more": lambda model: model.rubbed(times=1.3),
+    "bound_slightly": lambda model: model.rubbed(times=1.0001),
+    "at_one_place": at_one_place,
     "turned": turned,
     "thirds": thirds,
     "penalty": lambda model: model.rubbed(penalty),

@@ -67,6 +67,11 @@ impl<'a> Along<'a> {
         self.solution.excess[site]
     }
 
+    /// The node of its first side.
+    fn node(&self, site: usize) -> usize {
+        self.solution.sites.list[site].first
+    }
+
     fn finding(&self, energies: Energies) -> Option<Finding> {
         let name = |what: &str| format!("contact/{}/{what}", self.name);
         if self.solution.holds_weakly(self.interface).is_some() {
@@ -74,7 +79,7 @@ impl<'a> Along<'a> {
         }
         let deepest = self.sites.iter().copied().max_by(|a, b| self.depth(*a).total_cmp(&self.depth(*b)))?;
         let depth = self.depth(deepest);
-        let place = self.solution.named(self.solution.sites.list[deepest].first);
+        let place = self.solution.named(self.node(deepest));
         let carrying: Vec<usize> =
             self.sites.iter().copied().filter(|s| self.pressing(*s).abs() > self.least).collect();
         if depth > 0.5 * self.enough {
@@ -126,9 +131,9 @@ impl<'a> Along<'a> {
                 self.name,
                 counted(pulling.len(), "node"),
                 number(sum),
-                self.solution.named(self.solution.sites.list[most].first)
+                self.solution.named(self.node(most))
             );
-            return Some(Finding::new(name("glued"), Some(sum), Some(0.0), sentence));
+            return Some(Finding::new(name("glued"), Some(sum), Some(0.0), sentence).at(Some(self.node(most))));
         }
         // Straight edges may overlap a curve between nodes that are open.
         if self.solution.is_curved(self.interface) && !carrying.is_empty() {
@@ -151,13 +156,13 @@ impl<'a> Along<'a> {
                 "contact {} pushes at {}, at {} over a distance of {}{}",
                 self.name,
                 counted(open.len(), "open node"),
-                self.solution.named(self.solution.sites.list[widest].first),
+                self.solution.named(self.node(widest)),
                 number(-self.depth(widest)),
                 self.turned(&open)
             ),
         };
         let found = self.constant_gap(&open).map(|_| "gap").unwrap_or("open");
-        Some(Finding::new(name(found), Some(self.depth(widest)), Some(0.0), sentence))
+        Some(Finding::new(name(found), Some(self.depth(widest)), Some(0.0), sentence).at(Some(self.node(widest))))
     }
 
     /// How many penetrate without any force, where all that do have none: nodes, or Bernstein coefficients of the jump.

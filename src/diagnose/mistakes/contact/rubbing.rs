@@ -108,7 +108,9 @@ impl Along<'_> {
     }
 
     pub(super) fn found(&self, what: &str, value: Option<f64>, expected: Option<f64>, sentence: String) -> Finding {
-        Finding::new(format!("contact/{}/{what}", self.name), value, expected, sentence)
+        let rubbed = self.solution.rubbed(self.interface);
+        let worst = rubbed.iter().max_by(|a, b| a.miss.total_cmp(&b.miss)).map(|r| self.node(r.site));
+        Finding::new(format!("contact/{}/{what}", self.name), value, expected, sentence).at(worst)
     }
 
     /// The smooth law, with its parameter, that the forces follow best.
