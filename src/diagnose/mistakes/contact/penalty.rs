@@ -142,7 +142,7 @@ impl Along<'_> {
                 "gives way by up to {} ({:.1e} of the largest displacement) at {}",
                 number(depth),
                 depth / self.solution.largest,
-                self.solution.named(self.solution.sites.list[deepest].first)
+                self.solution.named(self.node(deepest))
             ),
             false => "gives way between the nodes, which are open".to_string(),
         };

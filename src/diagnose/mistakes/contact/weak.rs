@@ -43,7 +43,7 @@ impl Along<'_> {
             self.name,
             number(depth),
             depth / self.solution.largest.max(f64::MIN_POSITIVE),
-            self.solution.named(self.solution.sites.list[deepest].first),
+            self.solution.named(self.node(deepest)),
         )
     }
 }
