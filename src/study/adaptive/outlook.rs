@@ -53,7 +53,9 @@ pub fn outlook(history: &[HistoryRow], goal: &Goal, admission: &Admission<'_>, s
 /// True if the last two meshes were hardly worth their triangles, or if the last ten times as many unknowns changed next to nothing.
 pub fn stalls(history: &[HistoryRow], goal: &Goal) -> bool {
     let slow = |row: &HistoryRow| row.rate.zip(goal.least_rate).is_some_and(|(rate, least)| rate < least);
-    history.len() > 2 && history[history.len() - 2..].iter().all(slow) || stands_still(history)
+    // Refinement towards quantities may leave the energy as it is.
+    history.len() > 2 && history[history.len() - 2..].iter().all(slow)
+        || goal.wanted.is_empty() && stands_still(history)
 }
 
 /// True if the error falls over the last ten times as many unknowns by less than a power of them that halves it within 10³⁰. A feature that
@@ -79,6 +81,7 @@ fn rounded(count: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Wanted;
     use super::*;
     use crate::budget::Budget;
     use crate::dual::Condensed;
@@ -121,6 +124,8 @@ mod tests {
         assert!(stalls(&falling(0.005, 5), &goal));
         assert!(!stalls(&falling(0.005, 4), &goal), "eight times the unknowns");
         assert!(!stalls(&falling(0.05, 9), &goal), "slow, but it falls");
+        let wanted = vec![Wanted { name: "tip".to_string(), tolerance: 0.01 }];
+        assert!(!stalls(&falling(0.005, 5), &Goal { wanted, ..goal.clone() }), "towards a quantity");
         // Few triangles a mesh, towards a feature far below the size of any of them.
         let mut local = falling(0.0, 40);
         for (k, row) in local.iter_mut().enumerate() {
