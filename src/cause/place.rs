@@ -125,8 +125,8 @@ fn worst_node(judged: &Judged) -> Option<usize> {
 pub(super) fn of_finding(problem: &Problem, judged: &Judged, finding: &Finding) -> Option<Place> {
     let name = finding.name.as_str();
     let interface = problem.interfaces.iter().position(|i| name.starts_with(&format!("contact/{}/", i.name)));
-    if finding.node.is_some() {
-        return finding.node.map(|node| Place::of(problem, node, interface));
+    if let Some(node) = finding.node {
+        return Some(Place::of(problem, node, interface));
     }
     if interface.is_some() {
         return deepest(problem, &judged.candidate, interface).map(|(place, ..)| place);

@@ -28,6 +28,13 @@ pub struct Rubbed {
     pub miss: f64,
 }
 
+impl Rubbed {
+    /// The place of `all` where the law is missed most; `None` where it holds at all of them.
+    pub fn worst(all: &[Rubbed]) -> Option<&Rubbed> {
+        all.iter().max_by(|a, b| a.miss.total_cmp(&b.miss)).filter(|r| r.miss > 0.0)
+    }
+}
+
 /// The friction forces that a place may have, and the largest of them.
 #[derive(Debug, Clone, Copy, Default)]
 struct Law {
@@ -205,8 +212,7 @@ impl Solution<'_> {
         let rubbed = if self.is_pushed() { Vec::new() } else { self.rubbed(interface) };
         let total = self.applied().max(self.larger * self.carried(interface));
         let missed: f64 = rubbed.iter().map(|r| r.miss).sum();
-        let worst = rubbed.iter().max_by(|a, b| a.miss.total_cmp(&b.miss)).filter(|r| r.miss > 0.0);
-        let place = worst.map_or(String::new(), |r| {
+        let place = Rubbed::worst(&rubbed).map_or(String::new(), |r| {
             format!(
                 " It is missed most at {}: a force of {:.3e} where friction carries at most {:.3e}, and the sides slide by {:.3e}.",
                 self.named(self.sites.list[r.site].first),

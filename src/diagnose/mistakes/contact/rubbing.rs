@@ -73,6 +73,10 @@ impl Along<'_> {
         if self.solution.is_pushed() || missed <= self.least {
             return None;
         }
+        Some(self.wrong_friction(&rubbed).at(Rubbed::worst(&rubbed).map(|r| self.node(r.site))))
+    }
+
+    fn wrong_friction(&self, rubbed: &[Rubbed]) -> Finding {
         let sticks = self.solution.sticks_below();
         let sliding: Vec<&Rubbed> = rubbed.iter().filter(|r| r.slip.abs() > sticks).collect();
         let total: f64 = rubbed.iter().map(|r| r.force.abs()).sum();
@@ -83,7 +87,7 @@ impl Along<'_> {
                 sliding.len(),
                 rubbed.len()
             );
-            return Some(self.found("frictionless", Some(0.0), None, sentence));
+            return self.found("frictionless", Some(0.0), None, sentence);
         }
         let over: Vec<&Rubbed> = rubbed.iter().filter(|r| r.force.abs() > (1.0 + ABOVE) * r.limit).collect();
         if sliding.is_empty() {
@@ -96,7 +100,7 @@ impl Along<'_> {
                 self.name,
                 counted(over.len(), "node"),
             );
-            return Some(self.found("sticks", Some(most), Some(1.0), sentence));
+            return self.found("sticks", Some(most), Some(1.0), sentence);
         }
         let smooth = || {
             let nodes = self.solution.rubbed_as(self.interface, Ask::AtNodes);
@@ -104,13 +108,11 @@ impl Along<'_> {
             let better = BETTER * self.missed_by_own(&nodes, sticks);
             self.smooth(&nodes).filter(|fit| fit.miss <= better).map(|fit| self.told(&fit, &nodes))
         };
-        self.wrong_bound(sticks).or_else(smooth).or_else(|| Some(self.unlike(&rubbed)))
+        self.wrong_bound(sticks).or_else(smooth).unwrap_or_else(|| self.unlike(rubbed))
     }
 
     pub(super) fn found(&self, what: &str, value: Option<f64>, expected: Option<f64>, sentence: String) -> Finding {
-        let rubbed = self.solution.rubbed(self.interface);
-        let worst = rubbed.iter().max_by(|a, b| a.miss.total_cmp(&b.miss)).map(|r| self.node(r.site));
-        Finding::new(format!("contact/{}/{what}", self.name), value, expected, sentence).at(worst)
+        Finding::new(format!("contact/{}/{what}", self.name), value, expected, sentence)
     }
 
     /// The smooth law, with its parameter, that the forces follow best.
@@ -208,11 +210,11 @@ impl Along<'_> {
 
     /// The finding where no law is recognised.
     fn unlike(&self, rubbed: &[Rubbed]) -> Finding {
-        let worst = rubbed.iter().max_by(|a, b| a.miss.total_cmp(&b.miss));
+        let worst = Rubbed::worst(rubbed);
         let place = worst.map_or(String::new(), |r| {
             format!(
                 ", most at {}: the force along the sides is {} where friction carries {}, and they slide by {}",
-                self.solution.named(self.solution.sites.list[r.site].first),
+                self.solution.named(self.node(r.site)),
                 number(r.force),
                 number(r.limit),
                 number(r.slip)
