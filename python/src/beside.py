@@ -110,12 +110,18 @@ def copied(data):
     return json.loads(json.dumps(data))
 
 
+DEEPEST = 16
+"""Levels of tables and lists; no scene has half as many."""
+
+
 def toml(data):
     """The text of a scene whose tables are dictionaries; what is None is left out."""
-    return "".join(f"{json.dumps(str(key), ensure_ascii=False)} = {_toml(value, [key])}\n" for key, value in data.items() if value is not None)
+    return "".join(f"{_quoted(str(key), [key])} = {_toml(value, [key])}\n" for key, value in data.items() if value is not None)
 
 
 def _toml(value, place):
+    if len(place) > DEEPEST:
+        raise ValueError(f"{_named(place)} lies more than {DEEPEST} levels deep, deeper than any table of a scene: does it contain itself?")
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, bool):
@@ -123,13 +129,24 @@ def _toml(value, place):
     if isinstance(value, (int, float)):
         return repr(value)
     if isinstance(value, (str, os.PathLike)):
-        return json.dumps(os.fspath(value), ensure_ascii=False).replace("\x7f", "\\u007f")
+        return _quoted(os.fspath(value), place)
     if isinstance(value, dict):
-        entries = (f"{json.dumps(str(k), ensure_ascii=False)} = {_toml(v, [*place, k])}" for k, v in value.items() if v is not None)
+        entries = (f"{_quoted(str(k), [*place, k])} = {_toml(v, [*place, k])}" for k, v in value.items() if v is not None)
         return "{ " + ", ".join(entries) + " }"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_toml(v, [*place, i]) for i, v in enumerate(value)) + "]"
-    raise ValueError(f"{'.'.join(map(str, place))} is a {type(value).__name__}; a scene has numbers, text, lists, arrays and dictionaries")
+    raise ValueError(f"{_named(place)} has the type {type(value).__name__}; a scene has numbers, text, lists, arrays and dictionaries")
+
+
+def _named(place):
+    return ".".join(str(part).encode(errors="backslashreplace").decode() for part in place)
+
+
+def _quoted(text, place):
+    """The text as a string of TOML."""
+    if any("\ud800" <= letter <= "\udfff" for letter in text):
+        raise ValueError(f"{_named(place)} has half of a pair of UTF-16, which is no letter: {ascii(text)}; decode what it was read from")
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _flat(entry, prefix=""):

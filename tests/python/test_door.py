@@ -53,8 +53,16 @@ def test_a_scene_of_dictionaries_is_that_of_its_file(hypercircle, tmp_path):
     assert scene.solve().lower == hypercircle.Scene(CASES / "two_blocks.toml").solve().lower
     with pytest.raises(hypercircle.InputError, match="poisson"):
         hypercircle.Scene.from_dict(tables | {"bodies": {"left": {"young": 1, "poisson": 0.7}}})
-    with pytest.raises(hypercircle.InputError, match="bodies.left.young is a object"):
+    with pytest.raises(hypercircle.InputError, match="bodies.left.young has the type object"):
         hypercircle.Scene.from_dict({"bodies": {"left": {"young": object()}}})
+    itself = {}
+    itself["model"] = itself
+    with pytest.raises(hypercircle.InputError, match="more than 16 levels deep.*does it contain itself"):
+        hypercircle.Scene.from_dict(itself)
+    with pytest.raises(hypercircle.InputError, match=r"^model.kinematics has half of a pair of UTF-16.*'plane-\\ud800'"):
+        hypercircle.Scene.from_dict({"model": {"kinematics": "plane-\ud800"}})
+    with pytest.raises(hypercircle.InputError, match=r"^bodies.\\ud800 has half of a pair"):
+        hypercircle.Scene.from_dict({"bodies": {"\ud800": {}}})
     path = written(tmp_path)
     meshed = tomllib.loads(path.read_text()) | {"mesh": {"file": tmp_path / "plate.msh"}}
     assert hypercircle.Scene.from_dict(meshed).problem()["points"].shape == (25, 2)
