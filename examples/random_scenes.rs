@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use clap::Parser;
 use support::scenes::{sample, sample_of};
-use support::trial::table::{groups, head, row};
+use support::trial::table::{families, groups, head, row};
 use support::trial::{ADAPTIVE, Program, Trial};
 
 /// Solves random scenes in every way, and fails where the answers cannot all be true.
@@ -83,7 +83,7 @@ fn main() -> ExitCode {
     trials.sort_by_key(|t| t.seed);
     let rows: Vec<String> = trials.iter().map(row).collect();
     let summary = groups(&trials);
-    let page = format!("{summary}\n{}\n{}\n", head(!args.solve_only), rows.join("\n"));
+    let page = format!("{summary}\n{}\n{}\n{}\n", families(&trials), head(!args.solve_only), rows.join("\n"));
     std::fs::write(args.out.join("table.md"), page).expect("a folder to write to");
     println!("\n{summary}");
     for trial in trials.iter().filter(|t| !t.faults.is_empty()) {

@@ -104,15 +104,17 @@ class Reduced:
 
     def minimise(self) -> Solution:
         """Run the solver, check equilibrium and bounds, and gather the solution. Start with contacts closed whose gap
-        the bodies could be thought to cross; where that fails, once more with those alone that are closed already."""
+        the bodies could be thought to cross; where that fails, once more with those alone that are closed already.
+        Without loads nothing crosses a gap, and the two come in the other order."""
         right = self.b.array_r.copy()
         descent = Descent(self.A, right, self.lower, self.upper, self.terms, self.kink, self.weight)
+        first, second = (self.reach / self.scale.array_r, CLOSED) if self.b.norm() else (CLOSED, self.reach / self.scale.array_r)
         try:
-            found = self._checked(descent, self.reach / self.scale.array_r)
+            found = self._checked(descent, first)
         except Failure as failure:
-            log(self.comm, f"{failure}; once more, from no displacement")
+            log(self.comm, f"{failure}; once more, from other closed contacts")
             try:
-                found = self._checked(descent, CLOSED)
+                found = self._checked(descent, second)
             except Failure:
                 raise failure from None
         return self._gather(*found)
@@ -147,7 +149,14 @@ class Reduced:
         unscaled = self.scale.copy()
         unscaled.array[:] *= w
         u = self._displacement(unscaled)
-        return self.b.norm() + np.sqrt(max(u.dot(self.model.stiffness * u), 0.0))
+        return (self.b.norm() or self._overlap()) + np.sqrt(max(u.dot(self.model.stiffness * u), 0.0))
+
+    def _overlap(self) -> float:
+        """Energy norm of what undoes the overlaps at the start, and of what rounded coordinates do not show. Without loads a
+        solution may be rigid, and these are all that its rounding can be held against."""
+        undone = np.clip(0.0, self.lower, self.upper)
+        unseen = EPSILON * self.reach / self.scale.min()[1]
+        return np.sqrt(self.comm.allreduce(float(undone @ undone))) + unseen
 
     def _check(self, descent: Descent, found: Minimum) -> None:
         """Equilibrium, bounds and friction. What rounding leaves of a row of the residual says nothing against the solution."""

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::run::{Ended, Way};
+use super::run::Way;
 use super::{ADAPTIVE, METHODS, Trial};
 
 /// One line about a trial; verdicts in the order of its runs.
@@ -36,15 +36,41 @@ pub fn head(models: bool) -> String {
     )
 }
 
+/// The verdict of the last run that is no adaptive one: those may end at their limits.
+fn last_verdict(trial: &Trial) -> String {
+    let mut others = trial.runs.iter().rev().filter(|(way, _)| !matches!(way, Way::Adaptive(_)));
+    others.next().map_or(String::new(), |run| run.1.verdict())
+}
+
+/// Table of verdicts by family, and of all.
+pub fn families(trials: &[Trial]) -> String {
+    const VERDICTS: [&str; 5] = ["agree", "undecided", "disagree", "failed", "infeasible"];
+    let mut counts: BTreeMap<&str, [usize; VERDICTS.len()]> = BTreeMap::new();
+    let mut all = [0; VERDICTS.len()];
+    for trial in trials {
+        let verdict = last_verdict(trial);
+        let own = counts.entry(trial.family).or_default();
+        for (i, _) in VERDICTS.iter().enumerate().filter(|(_, name)| **name == verdict) {
+            own[i] += 1;
+            all[i] += 1;
+        }
+    }
+    let mut text =
+        format!("| family | scenes | {} |\n|---|--:{}|\n", VERDICTS.join(" | "), "|--:".repeat(VERDICTS.len()));
+    for (family, of) in counts.into_iter().chain([("all", all)]) {
+        let scenes = trials.iter().filter(|trial| family == "all" || trial.family == family).count();
+        let of: Vec<String> = of.iter().map(usize::to_string).collect();
+        text.push_str(&format!("| {family} | {scenes} | {} |\n", of.join(" | ")));
+    }
+    text
+}
+
 /// Table of faults by kind with their counts and seeds, and of verdicts with their counts.
 pub fn groups(trials: &[Trial]) -> String {
     let mut verdicts: BTreeMap<String, usize> = BTreeMap::new();
     let mut kinds: BTreeMap<&str, Vec<u64>> = BTreeMap::new();
     for trial in trials {
-        // An adaptive run may end at its limits.
-        let mut others = trial.runs.iter().rev().filter(|(way, _)| !matches!(way, Way::Adaptive(_)));
-        let last: Option<&Ended> = others.next().map(|r| &r.1);
-        *verdicts.entry(last.map_or(String::new(), Ended::verdict)).or_default() += 1;
+        *verdicts.entry(last_verdict(trial)).or_default() += 1;
         for fault in &trial.faults {
             let seeds = kinds.entry(&fault.kind).or_default();
             if seeds.last() != Some(&trial.seed) {
