@@ -56,7 +56,7 @@ fn main() -> ExitCode {
         for (coarse, fine) in coarse.iter().zip(&fine) {
             kinds.entry(coarse.kind.name()).or_default().add(seed, coarse, fine);
             for reason in coarse.interval.reasons.iter().flatten() {
-                *reasons.entry(without_numbers(reason)).or_default() += 1;
+                *reasons.entry(anonymous(reason)).or_default() += 1;
             }
         }
     }
@@ -162,11 +162,12 @@ fn quantile(values: &mut [f64], part: f64) -> f64 {
     values.get((part * values.len() as f64) as usize).copied().unwrap_or(f64::NAN)
 }
 
-/// A reason without its numbers, so that those alike are counted together.
-fn without_numbers(reason: &str) -> String {
+/// A reason without its numbers and names of bodies, so that those alike are counted together.
+fn anonymous(reason: &str) -> String {
     let word = |word: &str| {
         let bare = word.trim_matches(|c: char| !c.is_alphanumeric() && c != '-');
-        if bare.parse::<f64>().is_ok() { word.replace(bare, "…") } else { word.to_string() }
+        let is_name = word == format!("'{bare}'");
+        if bare.parse::<f64>().is_ok() || is_name { word.replace(bare, "…") } else { word.to_string() }
     };
     reason.split(' ').map(word).collect::<Vec<_>>().join(" ")
 }

@@ -141,9 +141,12 @@ fn contradictions(runs: &[&(Way, Ended)], rounding: f64) -> Vec<Fault> {
         && let (Some([before, _]), Some([after, _])) = (coarse.bracket(), fine.bracket())
     {
         // Meshes are nested, and so are the stresses: the bound rises, but for what it is widened by. A mesh that was
-        // divided at the ends of contact first need not lie in the finer one.
+        // divided at the ends of contact first need not lie in the finer one, and where triangles beside a body of
+        // degree 2 have it too, those that are finer and lie apart from it need not.
+        let degree = |ended: &Ended, which: &str| ended.number(&format!("/dual/degree_{which}"));
+        let is_nested = !was_divided(coarse) && degree(fine, "min") >= degree(coarse, "max");
         let slack = fine.number("/energy/widening").unwrap_or(0.0) + ROUNDING * scale(coarse) + rounding;
-        if after + slack < before && !was_divided(coarse) {
+        if after + slack < before && is_nested {
             faults.push(Fault::new("a lower bound that falls", format!("{before:e}, on the finer mesh {after:e}")));
         }
     }
