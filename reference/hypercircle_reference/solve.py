@@ -108,7 +108,9 @@ class Reduced:
         Without loads nothing crosses a gap, and the two come in the other order."""
         right = self.b.array_r.copy()
         descent = Descent(self.A, right, self.lower, self.upper, self.terms, self.kink, self.weight)
-        first, second = (self.reach / self.scale.array_r, CLOSED) if self.b.norm() else (CLOSED, self.reach / self.scale.array_r)
+        first, second = self.reach / self.scale.array_r, CLOSED
+        if not self.b.norm():
+            first, second = second, first
         try:
             found = self._checked(descent, first)
         except Failure as failure:

@@ -1,6 +1,6 @@
 //! Trials as Markdown.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::run::Way;
 use super::{ADAPTIVE, METHODS, Trial};
@@ -45,24 +45,15 @@ fn last_verdict(trial: &Trial) -> String {
 /// Table of verdicts by family, and of all.
 pub fn families(trials: &[Trial]) -> String {
     const VERDICTS: [&str; 5] = ["agree", "undecided", "disagree", "failed", "infeasible"];
-    let mut counts: BTreeMap<&str, [usize; VERDICTS.len()]> = BTreeMap::new();
-    let mut all = [0; VERDICTS.len()];
-    for trial in trials {
-        let verdict = last_verdict(trial);
-        let own = counts.entry(trial.family).or_default();
-        for (i, _) in VERDICTS.iter().enumerate().filter(|(_, name)| **name == verdict) {
-            own[i] += 1;
-            all[i] += 1;
-        }
-    }
-    let mut text =
-        format!("| family | scenes | {} |\n|---|--:{}|\n", VERDICTS.join(" | "), "|--:".repeat(VERDICTS.len()));
-    for (family, of) in counts.into_iter().chain([("all", all)]) {
-        let scenes = trials.iter().filter(|trial| family == "all" || trial.family == family).count();
-        let of: Vec<String> = of.iter().map(usize::to_string).collect();
-        text.push_str(&format!("| {family} | {scenes} | {} |\n", of.join(" | ")));
-    }
-    text
+    let line = |name: &str, is_in: &dyn Fn(&Trial) -> bool| {
+        let verdicts: Vec<String> = trials.iter().filter(|trial| is_in(trial)).map(last_verdict).collect();
+        let counts = VERDICTS.map(|known| verdicts.iter().filter(|verdict| *verdict == known).count().to_string());
+        format!("| {name} | {} | {} |\n", verdicts.len(), counts.join(" | "))
+    };
+    let names: BTreeSet<&str> = trials.iter().map(|trial| trial.family).collect();
+    let lines: String = names.iter().map(|name| line(name, &|trial| trial.family == *name)).collect();
+    let rule = "|--:".repeat(VERDICTS.len());
+    format!("| family | scenes | {} |\n|---|--:{rule}|\n{lines}{}", VERDICTS.join(" | "), line("all", &|_| true))
 }
 
 /// Table of faults by kind with their counts and seeds, and of verdicts with their counts.
